@@ -1,0 +1,31 @@
+include(GoogleTest)
+
+# dxslam_layer(NAME DEPENDS targets...): one library from src/NAME/*.cpp and, from *_test.cpp beside
+# the sources, one test program NAME_test. Headers are included as "NAME/header.h".
+function(dxslam_layer NAME)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;TEST_DEPENDS" ${ARGN})
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  set(TESTS ${SOURCES})
+  list(FILTER SOURCES EXCLUDE REGEX "_test\\.cpp$")
+  list(FILTER TESTS INCLUDE REGEX "_test\\.cpp$")
+
+  if(SOURCES)
+    add_library(dxslam_${NAME} STATIC ${SOURCES})
+    set(SCOPE PUBLIC)
+    target_link_libraries(dxslam_${NAME} PRIVATE dxslam_warnings)
+  else()
+    add_library(dxslam_${NAME} INTERFACE)
+    set(SCOPE INTERFACE)
+  endif()
+  target_include_directories(dxslam_${NAME} ${SCOPE} ${CMAKE_SOURCE_DIR}/src)
+  target_link_libraries(dxslam_${NAME} ${SCOPE} ${ARG_DEPENDS})
+
+  if(DXSLAM_BUILD_TESTS AND TESTS)
+    add_executable(${NAME}_test ${TESTS})
+    target_link_libraries(${NAME}_test PRIVATE dxslam_${NAME} ${ARG_TEST_DEPENDS} dxslam_warnings
+                          GTest::gmock GTest::gtest_main)
+    target_compile_definitions(${NAME}_test PRIVATE DXSLAM_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+    gtest_discover_tests(${NAME}_test TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 120
+                         WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
+  endif()
+endfunction()

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+namespace dxslam {
+
+/// Pinhole camera with radial-tangential distortion (k1 k2 p1 p2 k3, the model of OpenCV and TUM)
+/// and the depth sensor that is registered to it. Pixel centres are at integer coordinates.
+/// Plain data; safe to copy and to share between threads.
+struct Camera {
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;                     ///< pixels
+  double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;           ///< dimensionless
+  double fps = 30.0;             ///< nominal frame rate, 1/s
+  double depth_factor = 1000.0;  ///< raw depth units a metre (16-bit image / factor = metres)
+  /// Baseline of the depth sensor, metres: turns depth into the disparity of a virtual right image,
+  /// whose noise in pixels is nearly independent of the distance.
+  double depth_baseline = 0.075;
+  double max_depth = 10.0;  ///< metres; farther readings count as missing
+
+  /// Throws InputError, naming the field, if the values cannot be those of a camera.
+  void validate(const std::string& where) const;
+
+  bool has_distortion() const {
+    return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
+  }
+  /// fx times baseline, pixel metres: disparity = bf / depth.
+  double bf() const { return fx * depth_baseline; }
+  /// Undistorted pixel of a point in the camera frame; z must be positive.
+  Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {
+    const double inverse_z = 1.0 / point_in_camera.z();
+    return {fx * point_in_camera.x() * inverse_z + cx, fy * point_in_camera.y() * inverse_z + cy};
+  }
+  /// Point in the camera frame of an undistorted pixel at `depth` metres along z.
+  Eigen::Vector3d unproject(const Eigen::Vector2d& pixel, double depth) const {
+    return {(pixel.x() - cx) / fx * depth, (pixel.y() - cy) / fy * depth, depth};
+  }
+  /// Raw (distorted) pixel to the pixel of an ideal pinhole with the same intrinsics, and back.
+  Eigen::Vector2d undistort(const Eigen::Vector2d& pixel) const;
+  Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
+  bool contains(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= width - 1.0 &&
+           pixel.y() <= height - 1.0;
+  }
+};
+
+}  // namespace dxslam

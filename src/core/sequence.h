@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/frame.h"
+#include "core/trajectory.h"
+
+namespace dxslam {
+
+/// A frame that could not be used: which, and one sentence why.
+struct SkippedFrame {
+  std::size_t index = 0;
+  std::string reason;
+};
+
+/// A recording: images in time order, with calibration and, where known, the true trajectory.
+/// Implementations read lazily; one thread at a time may call a sequence.
+class RgbdSequence {
+ public:
+  virtual ~RgbdSequence() = default;
+  virtual const std::string& name() const = 0;
+  virtual const Camera& camera() const = 0;
+  /// Number of frames listed; some may turn out to be unreadable.
+  virtual std::size_t size() const = 0;
+  virtual double stamp(std::size_t index) const = 0;
+  /// Reads frame `index`. Nothing is returned for a broken frame; the reason is then the last
+  /// entry of skipped(). Throws ContractError if index >= size().
+  virtual std::optional<RgbdImage> read(std::size_t index) = 0;
+  virtual const std::vector<SkippedFrame>& skipped() const = 0;
+  /// world_from_camera of the colour camera; empty where unknown.
+  virtual const Trajectory& ground_truth() const = 0;
+};
+
+}  // namespace dxslam
