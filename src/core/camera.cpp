@@ -25,7 +25,8 @@ Eigen::Vector2d distort_normalised(const Camera& c, const Eigen::Vector2d& x) {
 void Camera::validate(const std::string& where) const {
   const auto check = [&](const char* name, double value, double min, double max) {
     if (value >= min && value <= max) return;
-    throw InputError(fmt::format("{}: camera {} is {}, expected {} to {}", where, name, value, min, max));
+    throw InputError(
+        fmt::format("{}: camera {} is {}, expected {} to {}", where, name, value, min, max));
   };
   check("width", width, 16, 16384);
   check("height", height, 16, 16384);

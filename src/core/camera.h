@@ -11,11 +11,11 @@ namespace dxslam {
 /// and the depth sensor that is registered to it. Pixel centres are at integer coordinates.
 /// Plain data; safe to copy and to share between threads.
 struct Camera {
-  int width = 0;   ///< pixels
-  int height = 0;  ///< pixels
-  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;                     ///< pixels
-  double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;           ///< dimensionless
-  double fps = 30.0;             ///< nominal frame rate, 1/s
+  int width = 0;                                            ///< pixels
+  int height = 0;                                           ///< pixels
+  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;            ///< pixels
+  double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;  ///< dimensionless
+  double fps = 30.0;                                        ///< nominal frame rate, 1/s
   double depth_factor = 1000.0;  ///< raw depth units a metre (16-bit image / factor = metres)
   /// Baseline of the depth sensor, metres: turns depth into the disparity of a virtual right image,
   /// whose noise in pixels is nearly independent of the distance.

@@ -14,7 +14,8 @@ constexpr float kSameSurface = 0.02F;  // neighbours within 2 % of depth belong 
 float depth_at(const cv::Mat& depth, float x, float y, double max_depth) {
   const int nearest_x = static_cast<int>(std::lround(x));
   const int nearest_y = static_cast<int>(std::lround(y));
-  if (nearest_x < 0 || nearest_y < 0 || nearest_x >= depth.cols || nearest_y >= depth.rows) return 0;
+  if (nearest_x < 0 || nearest_y < 0 || nearest_x >= depth.cols || nearest_y >= depth.rows)
+    return 0;
   const float nearest = depth.at<float>(nearest_y, nearest_x);
   if (!(nearest > 0.0F) || nearest > static_cast<float>(max_depth)) return 0.0F;
 
@@ -35,7 +36,8 @@ float depth_at(const cv::Mat& depth, float x, float y, double max_depth) {
 }
 
 void check_inputs(const RgbdImage& image, const Features& features, const Camera& camera) {
-  require(image.depth.empty() || image.depth.type() == CV_32FC1, "depth image must be CV_32FC1 metres");
+  require(image.depth.empty() || image.depth.type() == CV_32FC1,
+          "depth image must be CV_32FC1 metres");
   require(image.depth.empty() ||
               (image.depth.cols == camera.width && image.depth.rows == camera.height),
           "depth image must have the size of the camera");

@@ -25,7 +25,7 @@ struct RgbdImage {
 /// threads as std::shared_ptr<const Frame>.
 struct Frame {
   std::int64_t index = 0;
-  double stamp = 0.0;  ///< seconds
+  double stamp = 0.0;                   ///< seconds
   std::vector<Eigen::Vector2f> pixels;  ///< N undistorted positions
   std::vector<float> depths;            ///< N metres; 0 where there is no reading
   std::vector<float> scores;            ///< N detector confidences

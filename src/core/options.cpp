@@ -8,8 +8,8 @@ namespace dxslam {
 
 void RangeChecker::check(const char* name, double value, Range range, const char* unit) const {
   if (value >= range.min && value <= range.max) return;
-  throw InputError(fmt::format("option {}{} is {} {}, expected {} to {}", prefix_, name, value, unit,
-                               range.min, range.max));
+  throw InputError(fmt::format("option {}{} is {} {}, expected {} to {}", prefix_, name, value,
+                               unit, range.min, range.max));
 }
 
 }  // namespace dxslam

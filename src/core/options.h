@@ -34,7 +34,8 @@ class RangeChecker {
   void operator()(const char*, const bool&, const char*, const char*) {}
   void operator()(const char*, const std::string&, const char*, const char*) {}
   template <class Number>
-  void operator()(const char* name, const Number& value, Range range, const char* unit, const char*) {
+  void operator()(const char* name, const Number& value, Range range, const char* unit,
+                  const char*) {
     check(name, static_cast<double>(value), range, unit);
   }
   template <class Options>

@@ -16,6 +16,7 @@ class Sim3 {
 
   static Sim3 exp(const Vector7d& tangent);
   Vector7d log() const;
+  /// exp(Adj * v) = T * exp(v) * T^-1.
   Matrix7d adjoint() const;
   Eigen::Matrix4d matrix() const;
   Sim3 inverse() const;

@@ -22,7 +22,8 @@ struct PnpOptions {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("iterations", self.iterations, {1, 100000}, "samples", "most samples drawn");
-    visit("confidence", self.confidence, {0.5, 0.999999}, "", "wanted probability of one clean sample");
+    visit("confidence", self.confidence, {0.5, 0.999999}, "",
+          "wanted probability of one clean sample");
     visit("threshold", self.threshold, {0.1, 100}, "pixels", "reprojection error of an inlier");
     visit("min_inliers", self.min_inliers, {4, 100000}, "points", "fewer inliers are a failure");
     visit("seed", self.seed, {0, 2147483647}, "", "seed of the sampler");

@@ -19,7 +19,7 @@ struct PoseObservation {
 };
 
 struct PoseOptimizerOptions {
-  int rounds = 4;             // after each one the outliers are set aside anew
+  int rounds = 4;  // after each one the outliers are set aside anew
   int iterations = 10;
   double chi2_pixel = 5.991;  // 95 % of chi squared, 2 degrees of freedom
   double chi2_depth = 7.815;  // the same for 3
@@ -27,17 +27,20 @@ struct PoseOptimizerOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit("rounds", self.rounds, {1, 20}, "rounds", "re-weighting rounds; outliers are set aside after each");
+    visit("rounds", self.rounds, {1, 20}, "rounds",
+          "re-weighting rounds; outliers are set aside after each");
     visit("iterations", self.iterations, {1, 100}, "steps", "Levenberg-Marquardt steps a round");
-    visit("chi2_pixel", self.chi2_pixel, {0.1, 100}, "sigma^2", "gate of an observation without depth");
-    visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2", "gate of an observation with depth");
+    visit("chi2_pixel", self.chi2_pixel, {0.1, 100}, "sigma^2",
+          "gate of an observation without depth");
+    visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2",
+          "gate of an observation with depth");
     visit("min_inliers", self.min_inliers, {4, 1000}, "points", "fewer inliers are a failure");
   }
 };
 
 struct PoseReport {
-  bool success = false;    ///< enough inliers and a finite pose
-  SE3 world_from_camera;   ///< the start where not successful
+  bool success = false;      ///< enough inliers and a finite pose
+  SE3 world_from_camera;     ///< the start where not successful
   std::vector<char> inlier;  ///< one an observation
   int inliers = 0;
   double rms_pixels = 0.0;  ///< over inliers, pixel part of the residual
@@ -47,7 +50,8 @@ struct PoseReport {
 
 /// Motion-only bundle adjustment: the camera pose that best explains the observations, by
 /// Levenberg-Marquardt with a Huber kernel on (u, v) or (u, v, u - disparity) residuals.
-/// The last round runs without the kernel on inliers only. Deterministic; no allocation in the loop.
+/// The last round runs without the kernel on inliers only. Deterministic; no allocation in the
+/// loop.
 PoseReport optimize_pose(const Camera& camera, const SE3& world_from_camera,
                          const std::vector<PoseObservation>& observations,
                          const PoseOptimizerOptions& options);

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "matching/descriptor_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "core/error.h"
+
+// One source, several instruction sets: the loader picks the best the CPU has (ifunc). Sanitizers
+// start before ifuncs are resolved, so their builds take the portable version.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
+    defined(__GNUC__) && !defined(__clang__)
+#define DXSLAM_SIMD __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define DXSLAM_SIMD
+#endif
+
+namespace dxslam {
+namespace {
+
+constexpr int kLanes = 16;  // columns of a panel: one AVX-512 register, two of AVX2
+constexpr int kRows = 6;    // rows of a block, so that the accumulators stay in registers
+
+using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
+
+// Rows of b transposed into panels of kLanes columns: panel[d * kLanes + lane].
+std::vector<float> pack_panels(const cv::Mat& b) {
+  const int panels = (b.rows + kLanes - 1) / kLanes;
+  std::vector<float> packed(static_cast<std::size_t>(panels) * kLanes * b.cols, 0.0F);
+  for (int j = 0; j < b.rows; ++j) {
+    float* panel = packed.data() + static_cast<std::size_t>(j / kLanes) * kLanes * b.cols;
+    const float* row = b.ptr<float>(j);
+    for (int d = 0; d < b.cols; ++d) panel[d * kLanes + j % kLanes] = row[d];
+  }
+  return packed;
+}
+
+DXSLAM_SIMD void dot_block(const float* const* rows, int row_count, const float* panel, int dim,
+                           float* out, int out_stride) {
+  Lanes sum[kRows] = {};
+  for (int d = 0; d < dim; ++d) {
+    const Lanes column = *reinterpret_cast<const Lanes*>(panel + d * kLanes);
+    for (int r = 0; r < kRows; ++r) sum[r] += rows[r][d] * column;
+  }
+  for (int r = 0; r < row_count; ++r) {
+    std::memcpy(out + static_cast<std::ptrdiff_t>(r) * out_stride, &sum[r], sizeof(Lanes));
+  }
+}
+
+void float_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
+  const std::vector<float> packed = pack_panels(b);
+  float block[kRows * kLanes];
+  for (int i = 0; i < a.rows; i += kRows) {
+    const int row_count = std::min(kRows, a.rows - i);
+    const float* rows[kRows];
+    for (int r = 0; r < kRows; ++r) rows[r] = a.ptr<float>(std::min(i + r, a.rows - 1));
+    for (int j = 0; j < b.rows; j += kLanes) {
+      const float* panel = packed.data() + static_cast<std::size_t>(j) * b.cols;
+      const int columns = std::min(kLanes, b.rows - j);
+      dot_block(rows, row_count, panel, a.cols, block, kLanes);
+      for (int r = 0; r < row_count; ++r) {
+        std::copy_n(block + r * kLanes, columns,
+                    similarity + static_cast<std::size_t>(i + r) * b.rows + j);
+      }
+    }
+  }
+}
+
+DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, int bytes) {
+  int bits = 0;
+  int k = 0;
+  for (; k + 8 <= bytes; k += 8) {
+    std::uint64_t x = 0;
+    std::uint64_t y = 0;
+    std::memcpy(&x, a + k, 8);
+    std::memcpy(&y, b + k, 8);
+    bits += __builtin_popcountll(x ^ y);
+  }
+  for (; k < bytes; ++k) bits += __builtin_popcount(static_cast<unsigned>(a[k] ^ b[k]));
+  return bits;
+}
+
+DXSLAM_SIMD void binary_row_similarities(const std::uint8_t* a, const std::uint8_t* b, int b_rows,
+                                         std::size_t b_step, int bytes, float* similarity) {
+  for (int j = 0; j < b_rows; ++j) {
+    const std::uint8_t* row = b + static_cast<std::size_t>(j) * b_step;
+    int bits = 0;
+    int k = 0;
+    for (; k + 8 <= bytes; k += 8) {
+      std::uint64_t x = 0;
+      std::uint64_t y = 0;
+      std::memcpy(&x, a + k, 8);
+      std::memcpy(&y, row + k, 8);
+      bits += __builtin_popcountll(x ^ y);
+    }
+    for (; k < bytes; ++k) bits += __builtin_popcount(static_cast<unsigned>(a[k] ^ row[k]));
+    similarity[j] = static_cast<float>(-bits);
+  }
+}
+
+DXSLAM_SIMD float dot(const float* a, const float* b, int dim) {
+  Lanes sum = {};
+  int d = 0;
+  for (; d + kLanes <= dim; d += kLanes) {
+    sum += *reinterpret_cast<const Lanes*>(a + d) * *reinterpret_cast<const Lanes*>(b + d);
+  }
+  float total = 0.0F;
+  for (int lane = 0; lane < kLanes; ++lane) total += sum[lane];
+  for (; d < dim; ++d) total += a[d] * b[d];
+  return total;
+}
+
+}  // namespace
+
+float distance_of_similarity(float similarity, bool binary) {
+  return binary ? -similarity : std::sqrt(std::max(0.0F, 2.0F - 2.0F * similarity));
+}
+
+float descriptor_distance(const cv::Mat& a, int row_a, const cv::Mat& b, int row_b) {
+  if (a.depth() == CV_32F) {
+    return distance_of_similarity(dot(a.ptr<float>(row_a), b.ptr<float>(row_b), a.cols), false);
+  }
+  return static_cast<float>(differing_bits(a.ptr(row_a), b.ptr(row_b), a.cols));
+}
+
+void descriptor_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
+  if (a.empty() || b.empty()) return;
+  require(a.type() == b.type() && a.cols == b.cols,
+          "descriptors to compare must be of one type and dimension");
+  if (a.depth() == CV_32F) {
+    float_similarities(a, b, similarity);
+    return;
+  }
+  for (int i = 0; i < a.rows; ++i) {
+    binary_row_similarities(a.ptr(i), b.ptr(), b.rows, b.step[0], a.cols,
+                            similarity + static_cast<std::size_t>(i) * b.rows);
+  }
+}
+
+}  // namespace dxslam

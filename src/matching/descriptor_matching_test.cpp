@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "matching/descriptor_matching.h"
+
+#include <gtest/gtest.h>
+
+#include <bitset>
+#include <cmath>
+#include <random>
+
+#include "core/error.h"
+#include "matching/descriptor_distance.h"
+
+namespace dxslam {
+namespace {
+
+cv::Mat random_unit_rows(int rows, int dim, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<float> normal;
+  cv::Mat m(rows, dim, CV_32F);
+  for (int i = 0; i < rows; ++i) {
+    for (int d = 0; d < dim; ++d) m.at<float>(i, d) = normal(generator);
+    m.row(i) /= cv::norm(m.row(i));
+  }
+  return m;
+}
+
+cv::Mat random_bytes(int rows, int bytes, unsigned seed) {
+  std::mt19937 generator(seed);
+  cv::Mat m(rows, bytes, CV_8U);
+  for (int i = 0; i < rows; ++i) {
+    for (int d = 0; d < bytes; ++d)
+      m.at<std::uint8_t>(i, d) = static_cast<std::uint8_t>(generator());
+  }
+  return m;
+}
+
+float slow_similarity(const cv::Mat& a, int i, const cv::Mat& b, int j) {
+  double sum = 0.0;
+  for (int d = 0; d < a.cols; ++d) {
+    if (a.depth() == CV_32F) {
+      sum += static_cast<double>(a.at<float>(i, d)) * b.at<float>(j, d);
+    } else {
+      sum -= static_cast<double>(
+          std::bitset<8>(static_cast<unsigned>(a.at<std::uint8_t>(i, d) ^ b.at<std::uint8_t>(j, d)))
+              .count());
+    }
+  }
+  return static_cast<float>(sum);
+}
+
+class Similarities : public testing::TestWithParam<std::tuple<int, int, int, bool>> {};
+
+TEST_P(Similarities, EqualTheSlowReference) {
+  const auto [rows_a, rows_b, dim, binary] = GetParam();
+  const cv::Mat a = binary ? random_bytes(rows_a, dim, 1) : random_unit_rows(rows_a, dim, 1);
+  const cv::Mat b = binary ? random_bytes(rows_b, dim, 2) : random_unit_rows(rows_b, dim, 2);
+  std::vector<float> fast(static_cast<std::size_t>(rows_a * rows_b));
+  descriptor_similarities(a, b, fast.data());
+  for (int i = 0; i < rows_a; ++i) {
+    for (int j = 0; j < rows_b; ++j) {
+      const float slow = slow_similarity(a, i, b, j);
+      ASSERT_NEAR(fast[static_cast<std::size_t>(i * rows_b + j)], slow, 1e-5F) << i << " " << j;
+      ASSERT_NEAR(descriptor_distance(a, i, b, j), distance_of_similarity(slow, binary), 1e-3F);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Similarities,
+                         testing::Values(std::tuple{1, 1, 64, false}, std::tuple{7, 17, 64, false},
+                                         std::tuple{13, 33, 256, false},
+                                         std::tuple{6, 16, 5, false}, std::tuple{1, 1, 32, true},
+                                         std::tuple{9, 20, 32, true}, std::tuple{5, 4, 61, true}));
+
+TEST(DescriptorSimilarities, RefuseRowsOfDifferentKinds) {
+  std::vector<float> out(4);
+  EXPECT_THROW(
+      descriptor_similarities(random_unit_rows(2, 64, 1), random_unit_rows(2, 32, 1), out.data()),
+      ContractError);
+  EXPECT_THROW(
+      descriptor_similarities(random_unit_rows(2, 32, 1), random_bytes(2, 32, 1), out.data()),
+      ContractError);
+}
+
+TEST(MatchMutual, FindsAPermutation) {
+  const cv::Mat a = random_unit_rows(50, 64, 3);
+  cv::Mat b;
+  for (int i = 49; i >= 0; --i) b.push_back(a.row(i));
+  const std::vector<Match> matches = match_mutual(a, b, 0.5F, 0.9F);
+  ASSERT_EQ(matches.size(), 50U);
+  for (const Match& m : matches) EXPECT_EQ(m.a + m.b, 49);
+}
+
+TEST(MatchMutual, RatioTestDropsAmbiguousRowsAndDistanceFarOnes) {
+  const cv::Mat a = random_unit_rows(2, 64, 4);
+  cv::Mat b = a.row(0).clone();
+  b.push_back(a.row(0));
+  EXPECT_TRUE(match_mutual(a.row(0), b, 0.5F, 0.9F).empty());
+  EXPECT_EQ(match_mutual(a.row(0), b, 0.5F, 1.0F).size(), 1U);
+  EXPECT_TRUE(match_mutual(a.row(0), a.row(1), 0.5F, 1.0F).empty());
+}
+
+TEST(MatchMutual, NothingToMatchIsNoMatch) {
+  EXPECT_TRUE(match_mutual(cv::Mat(), random_unit_rows(2, 64, 1), 2.0F, 1.0F).empty());
+  EXPECT_TRUE(match_mutual(random_unit_rows(2, 64, 1), cv::Mat(), 2.0F, 1.0F).empty());
+}
+
+}  // namespace
+}  // namespace dxslam
