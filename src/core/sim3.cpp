@@ -31,7 +31,8 @@ Eigen::Matrix3d translation_jacobian(const Eigen::Vector3d& phi, double sigma) {
   const double sine = std::sin(theta);
   const double cosine = std::cos(theta);
   const double a = (scale * (sigma * sine / theta - cosine) + 1.0) / radius2;
-  const double b = (c - (scale * (sigma * cosine + theta * sine) - sigma) / radius2) / (theta * theta);
+  const double b =
+      (c - (scale * (sigma * cosine + theta * sine) - sigma) / radius2) / (theta * theta);
   return c * Eigen::Matrix3d::Identity() + a * w + b * w * w;
 }
 

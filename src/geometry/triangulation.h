@@ -14,7 +14,8 @@ namespace dxslam {
 /// one Gauss-Newton step. Nothing if it lies behind a camera or the rays are parallel within
 /// `min_parallax` radians.
 std::optional<Eigen::Vector3d> triangulate(const Camera& camera, const SE3& world_from_a,
-                                           const Eigen::Vector2d& pixel_in_a, const SE3& world_from_b,
+                                           const Eigen::Vector2d& pixel_in_a,
+                                           const SE3& world_from_b,
                                            const Eigen::Vector2d& pixel_in_b, double min_parallax);
 
 }  // namespace dxslam

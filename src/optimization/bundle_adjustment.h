@@ -18,8 +18,8 @@ struct BundleProblem {
     bool fixed = false;
   };
   struct Observation {
-    int pose = 0;   ///< index into poses
-    int point = 0;  ///< index into points
+    int pose = 0;            ///< index into poses
+    int point = 0;           ///< index into points
     Eigen::Vector2d pixel;   ///< undistorted
     double disparity = 0.0;  ///< bf / depth, pixels; 0 where the keypoint has no depth
     double sigma = 1.0;      ///< pixels
@@ -30,8 +30,8 @@ struct BundleProblem {
 };
 
 struct BundleOptions {
-  int iterations = 5;          // with the robust kernel
-  int refine_iterations = 5;   // after outliers were set aside
+  int iterations = 5;         // with the robust kernel
+  int refine_iterations = 5;  // after outliers were set aside
   double chi2_pixel = 5.991;
   double chi2_depth = 7.815;
   int threads = 1;
@@ -39,10 +39,14 @@ struct BundleOptions {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("iterations", self.iterations, {1, 1000}, "steps", "steps with the robust kernel");
-    visit("refine_iterations", self.refine_iterations, {0, 1000}, "steps", "steps after outliers were set aside");
-    visit("chi2_pixel", self.chi2_pixel, {0.1, 100}, "sigma^2", "gate of an observation without depth");
-    visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2", "gate of an observation with depth");
-    visit("threads", self.threads, {1, 64}, "threads", "threads of the solver; results do not depend on it with 1");
+    visit("refine_iterations", self.refine_iterations, {0, 1000}, "steps",
+          "steps after outliers were set aside");
+    visit("chi2_pixel", self.chi2_pixel, {0.1, 100}, "sigma^2",
+          "gate of an observation without depth");
+    visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2",
+          "gate of an observation with depth");
+    visit("threads", self.threads, {1, 64}, "threads",
+          "threads of the solver; results do not depend on it with 1");
   }
 };
 
@@ -58,7 +62,7 @@ struct BundleReport {
 /// Bundle adjustment over all poses not fixed and all points: robust (Huber) first, then refined
 /// without the observations that fail their gate. If no pose is fixed, pose 0 is held.
 /// Changes poses and points in place only on success. Throws ContractError on indices out of range.
-BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options,
-                           const std::atomic<bool>* stop = nullptr);
+BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem,
+                           const BundleOptions& options, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace dxslam
