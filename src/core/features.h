@@ -26,4 +26,20 @@ struct Features {
   std::size_t size() const { return keypoints.size(); }
 };
 
+/// How descriptors of one extractor are compared.
+struct DescriptorTraits {
+  bool binary = false;  ///< bytes compared by Hamming distance, else floats compared by L2 distance
+  int dimension = 0;    ///< floats, or bytes where binary
+  /// Farthest distance at which two descriptors may be of the same point: L2 of unit vectors
+  /// (0 to 2), or differing bits where binary.
+  float max_distance = 0.0F;
+  int global_dimension = 0;  ///< floats of the global descriptor; 0 where there is none
+};
+
+/// Wall-clock time of one step of an extraction.
+struct StageTime {
+  const char* name = "";  ///< a string literal
+  double ms = 0.0;
+};
+
 }  // namespace dxslam

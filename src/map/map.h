@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "map/map_types.h"
+
+namespace dxslam {
+
+/// Keyframes and points, and who sees what. The map owns both, in dense storage indexed by id, and
+/// is the only place that changes observations and covisibility, so that the two always agree.
+/// Not thread-safe: one thread owns a map, others get snapshots (local_map.h).
+class Map {
+ public:
+  /// Adds a keyframe without points. `parent` must exist, or be kNoId for the first one.
+  KeyframeId add_keyframe(FramePtr frame, const SE3& world_from_camera, KeyframeId parent);
+  /// Adds a point first seen by keypoint `keypoint` of `keyframe`, which must be free.
+  PointId add_point(const Eigen::Vector3d& position, KeyframeId keyframe, std::uint32_t keypoint);
+  /// Binds a free keypoint to a point not yet seen by that keyframe.
+  /// Returns false, changing nothing, if either is taken.
+  bool add_observation(PointId point, KeyframeId keyframe, std::uint32_t keypoint);
+  /// Unbinds; a point left with no observation is removed.
+  void remove_observation(PointId point, KeyframeId keyframe);
+  void remove_point(PointId point);
+  /// Moves the observations of `from` to `to` where `to` has none in that keyframe, adds up the
+  /// counters and removes `from`.
+  void merge_points(PointId from, PointId to);
+  /// Removes a keyframe and its observations; its children in the tree go to its parent, and its
+  /// pose relative to the parent stays on record (anchor_of). The first keyframe cannot be removed.
+  void remove_keyframe(KeyframeId keyframe);
+
+  bool has_keyframe(KeyframeId id) const {
+    return id < keyframes_.size() && keyframes_[id] != nullptr;
+  }
+  bool has_point(PointId id) const { return id < points_.size() && points_[id].has_value(); }
+  /// Throw ContractError for ids that do not exist (any more).
+  const Keyframe& keyframe(KeyframeId id) const;
+  const MapPoint& point(PointId id) const;
+
+  void set_pose(KeyframeId id, const SE3& world_from_camera);
+  void set_position(PointId id, const Eigen::Vector3d& position);
+  /// Adds to the counters that decide whether a point is worth keeping.
+  void count_visible(PointId id, std::uint32_t visible, std::uint32_t found);
+  /// Brings normal, distance and descriptor up to date with the observations: the descriptor is the
+  /// one closest to all others (medoid) of at most eight observations spread over all.
+  void refresh_point(PointId id);
+
+  /// Ids of all living keyframes and points, rising.
+  std::vector<KeyframeId> keyframe_ids() const;
+  std::vector<PointId> point_ids() const;
+  std::size_t keyframe_count() const { return keyframe_count_; }
+  std::size_t point_count() const { return point_count_; }
+  KeyframeId last_keyframe() const { return last_keyframe_; }
+
+  /// The n keyframes that share most points with `id`, by falling number (ties: newer first).
+  std::vector<Covisible> best_covisibles(KeyframeId id, std::size_t n, int min_shared) const;
+
+  /// A living keyframe and the pose relative to it.
+  struct Anchor {
+    KeyframeId keyframe = kNoId;
+    SE3 anchor_from_camera;
+  };
+  /// Where `id`, removed or not, hangs now: itself, or the nearest living ancestor.
+  Anchor anchor_of(KeyframeId id) const;
+
+ private:
+  struct Removed {
+    KeyframeId parent = kNoId;
+    SE3 parent_from_camera;
+  };
+  Keyframe& mutable_keyframe(KeyframeId id);
+  MapPoint& mutable_point(PointId id);
+  void change_covisibility(const MapPoint& point, KeyframeId keyframe, int change);
+
+  std::vector<std::unique_ptr<Keyframe>> keyframes_;  // by id; null where removed
+  std::vector<std::optional<MapPoint>> points_;       // by id; empty where removed
+  std::vector<Removed> removed_;                      // by keyframe id
+  std::size_t keyframe_count_ = 0;
+  std::size_t point_count_ = 0;
+  KeyframeId last_keyframe_ = kNoId;
+};
+
+}  // namespace dxslam

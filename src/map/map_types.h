@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/frame.h"
+#include "core/se3.h"
+
+namespace dxslam {
+
+// Ids are given once and never again; they index the map's dense storage.
+using KeyframeId = std::uint32_t;
+using PointId = std::uint32_t;
+inline constexpr std::uint32_t kNoId = 0xFFFFFFFFU;
+
+/// Keypoint `keypoint` of keyframe `keyframe` is an image of the point.
+struct PointObservation {
+  KeyframeId keyframe = kNoId;
+  std::uint32_t keypoint = 0;
+};
+
+/// A point of the scene. Its descriptor is that of one of its observations.
+struct MapPoint {
+  PointId id = kNoId;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< in world, metres
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< mean unit direction from point to cameras
+  float distance = 0.0F;  ///< median distance to the cameras that see it, metres
+  KeyframeId created_by = kNoId;
+  std::uint32_t visible = 0;                   ///< frames in which it should have been seen
+  std::uint32_t found = 0;                     ///< frames in which it was matched
+  std::vector<PointObservation> observations;  ///< by rising keyframe, one a keyframe
+  std::uint32_t descriptor = 0;                ///< index into observations
+};
+
+/// Keyframes that see the same points: `shared` is how many.
+struct Covisible {
+  KeyframeId keyframe = kNoId;
+  int shared = 0;
+};
+
+struct Keyframe {
+  KeyframeId id = kNoId;
+  FramePtr frame;
+  SE3 world_from_camera;
+  std::vector<PointId> points;        ///< one a keypoint; kNoId where there is none
+  std::vector<Covisible> covisibles;  ///< by rising keyframe id
+  KeyframeId parent = kNoId;          ///< in the spanning tree; kNoId for the first
+};
+
+}  // namespace dxslam

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "mapping/local_mapper.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/options.h"
+#include "mapping/local_bundle.h"
+
+namespace dxslam {
+
+LocalMapper::LocalMapper(const Camera& camera, const DescriptorTraits& traits,
+                         const MappingOptions& options)
+    : camera_(camera), traits_(traits), options_(options) {
+  validate_options("mapping", options);
+}
+
+MappingReport LocalMapper::insert(const KeyframeRequest& request) {
+  SE3 world_from_camera;
+  KeyframeId parent = kNoId;
+  if (request.reference != kNoId) {
+    const Map::Anchor anchor = map_.anchor_of(request.reference);
+    parent = anchor.keyframe;
+    world_from_camera = map_.keyframe(parent).world_from_camera * anchor.anchor_from_camera *
+                        request.reference_from_camera;
+  }
+  for (const PointCount& count : request.counts) {
+    if (map_.has_point(count.point)) map_.count_visible(count.point, count.visible, count.found);
+  }
+  MappingReport report;
+  report.keyframe = map_.add_keyframe(request.frame, world_from_camera, parent);
+  bind_matches(request, report.keyframe);
+  report.culled_points = cull_recent_points();
+  report.new_points = create_points_from_depth(report.keyframe);
+  return report;
+}
+
+void LocalMapper::refine(MappingReport& report) {
+  report.fused_points = fuse_with_neighbours(report.keyframe);
+  report.triangulated_points = create_points_by_triangulation(report.keyframe);
+  adjust_local_bundle(report.keyframe, report);
+  report.culled_keyframes = cull_keyframes(report.keyframe);
+}
+
+LocalMapPtr LocalMapper::local_map() {
+  return make_local_map(map_, map_.last_keyframe(), ++version_, options_.local_map);
+}
+
+void LocalMapper::bind_matches(const KeyframeRequest& request, KeyframeId keyframe) {
+  for (std::size_t i = 0; i < request.points.size(); ++i) {
+    const PointId point = request.points[i];
+    if (!map_.has_point(point)) continue;
+    if (map_.add_observation(point, keyframe, static_cast<std::uint32_t>(i)))
+      map_.refresh_point(point);
+  }
+}
+
+int LocalMapper::create_points_from_depth(KeyframeId keyframe) {
+  const Keyframe& k = map_.keyframe(keyframe);
+  int created = 0;
+  for (std::size_t i = 0; i < k.frame->size(); ++i) {
+    const double depth = static_cast<double>(k.frame->depths[i]);
+    if (k.points[i] != kNoId || depth <= 0.0 || depth > options_.max_point_depth) continue;
+    const Eigen::Vector3d in_camera = camera_.unproject(k.frame->pixels[i].cast<double>(), depth);
+    const PointId point =
+        map_.add_point(k.world_from_camera * in_camera, keyframe, static_cast<std::uint32_t>(i));
+    recent_.push_back({point, keyframe});
+    ++created;
+  }
+  return created;
+}
+
+int LocalMapper::cull_recent_points() {
+  int culled = 0;
+  const KeyframeId newest = map_.last_keyframe();
+  const auto judge = [&](const Recent& recent) {
+    if (!map_.has_point(recent.point)) return true;  // fused away meanwhile
+    const MapPoint& p = map_.point(recent.point);
+    const int age = static_cast<int>(newest - recent.created_by);
+    const bool rarely_found = p.found < options_.min_found_ratio * p.visible;
+    const bool ended = age >= options_.probation;
+    const bool lonely =
+        ended && static_cast<int>(p.observations.size()) < options_.min_observations;
+    if (rarely_found || lonely) {
+      map_.remove_point(recent.point);
+      ++culled;
+      return true;
+    }
+    return ended;
+  };
+  recent_.erase(std::remove_if(recent_.begin(), recent_.end(), judge), recent_.end());
+  return culled;
+}
+
+int LocalMapper::cull_keyframes(KeyframeId newest) {
+  int culled = 0;
+  for (const Covisible& c : std::vector<Covisible>(map_.keyframe(newest).covisibles)) {
+    const Keyframe& k = map_.keyframe(c.keyframe);
+    // The last few are still being matched with, the first holds the world frame.
+    if (k.parent == kNoId || newest - k.id <= 2) continue;
+    int points = 0;
+    int redundant = 0;
+    for (const PointId id : k.points) {
+      if (id == kNoId) continue;
+      ++points;
+      const int others = static_cast<int>(map_.point(id).observations.size()) - 1;
+      if (others >= options_.redundant_observers) ++redundant;
+    }
+    if (points == 0 || redundant > options_.redundant_share * points) {
+      map_.remove_keyframe(k.id);
+      ++culled;
+    }
+  }
+  return culled;
+}
+
+int LocalMapper::adjust_full_bundle(const BundleOptions& options) {
+  LocalBundle bundle = gather_full_bundle(map_, camera_);
+  const BundleReport result = adjust_bundle(camera_, bundle.problem, options);
+  return result.usable ? apply_local_bundle(bundle, result, map_) : 0;
+}
+
+void LocalMapper::adjust_local_bundle(KeyframeId keyframe, MappingReport& report) {
+  LocalBundle bundle = gather_local_bundle(map_, keyframe, camera_, options_);
+  report.bundle_keyframes = static_cast<int>(bundle.free_keyframes);
+  report.bundle_points = static_cast<int>(bundle.points.size());
+  report.bundle_observations = static_cast<int>(bundle.problem.observations.size());
+  if (bundle.keyframes.size() < 2) return;
+  const BundleReport result = adjust_bundle(camera_, bundle.problem, options_.bundle);
+  if (result.usable) report.outlier_observations = apply_local_bundle(bundle, result, map_);
+}
+
+}  // namespace dxslam

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/features.h"
+#include "map/local_map.h"
+#include "map/map.h"
+#include "mapping/mapping_options.h"
+#include "tracking/tracking_types.h"
+
+namespace dxslam {
+
+/// What one keyframe changed.
+struct MappingReport {
+  KeyframeId keyframe = kNoId;
+  int new_points = 0;
+  int triangulated_points = 0;
+  int fused_points = 0;
+  int culled_points = 0;
+  int culled_keyframes = 0;
+  int bundle_keyframes = 0;
+  int bundle_points = 0;
+  int bundle_observations = 0;
+  int outlier_observations = 0;
+};
+
+/// Grows and refines the map, keyframe by keyframe (paper III.A, "Local mapping"). Owns the map.
+/// Belongs to one thread; others see the map through local_map().
+class LocalMapper {
+ public:
+  LocalMapper(const Camera& camera, const DescriptorTraits& traits, const MappingOptions& options);
+
+  /// Puts the requested keyframe into the map with its matches and new points from depth. Quick;
+  /// afterwards local_map() is what tracking should use until refine() is through.
+  MappingReport insert(const KeyframeRequest& request);
+  /// Second half, for the keyframe inserted last: fuse with neighbours, triangulate, adjust the
+  /// local bundle, cull. `report` is the one insert() returned.
+  void refine(MappingReport& report);
+
+  /// Adjusts all keyframes and points together. Returns the observations unbound as outliers.
+  int adjust_full_bundle(const BundleOptions& options);
+
+  /// Snapshot around the newest keyframe. There must be one.
+  LocalMapPtr local_map();
+  const Map& map() const { return map_; }
+
+ private:
+  struct Recent {
+    PointId point;
+    KeyframeId created_by;
+  };
+  void bind_matches(const KeyframeRequest& request, KeyframeId keyframe);
+  int create_points_from_depth(KeyframeId keyframe);
+  int create_points_by_triangulation(KeyframeId keyframe);
+  int fuse_with_neighbours(KeyframeId keyframe);
+  int fuse_points(const std::vector<PointId>& points, KeyframeId target);
+  int cull_recent_points();
+  int cull_keyframes(KeyframeId newest);
+  void adjust_local_bundle(KeyframeId keyframe, MappingReport& report);
+
+  Camera camera_;
+  DescriptorTraits traits_;
+  MappingOptions options_;
+  Map map_;
+  std::vector<Recent> recent_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace dxslam

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "tracking/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/options.h"
+#include "tracking/keyframe_decision.h"
+
+namespace dxslam {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+int count_map_points(const std::vector<KnownPoint>& known) {
+  return static_cast<int>(
+      std::count_if(known.begin(), known.end(), [](const KnownPoint& k) { return k.id != kNoId; }));
+}
+
+}  // namespace
+
+Tracker::Tracker(const Camera& camera, const DescriptorTraits& traits,
+                 const TrackerOptions& options)
+    : camera_(camera), traits_(traits), options_(options) {
+  validate_options("tracking", options);
+}
+
+void Tracker::set_local_map(LocalMapPtr local_map) {
+  require(local_map != nullptr, "a local map must not be null");
+  if (local_ && last_.frame) {
+    // Mapping may have moved the keyframe that the last pose hangs on: move along.
+    const SE3* moved = local_map->find_pose(local_->reference);
+    if (moved != nullptr) {
+      last_.world_from_camera =
+          *moved * local_->world_from_reference.inverse() * last_.world_from_camera;
+    }
+  }
+  if (!local_ || local_->reference != local_map->reference) {
+    for (std::size_t i = 0; last_.frame == local_map->reference_frame && i < last_.points.size();
+         ++i) {
+      last_.points[i] = local_map->reference_points[i];
+    }
+  }
+  local_ = std::move(local_map);
+}
+
+TrackedFrame Tracker::track(const FramePtr& frame, std::optional<KeyframeRequest>& request) {
+  request.reset();
+  ++frames_since_keyframe_;
+  OptionalEstimate estimate;
+  if (!local_) {
+    estimate = start(*frame);
+  } else {
+    const KeypointGrid grid(frame->pixels);
+    estimate = track_last_frame(*frame, grid);
+    if (estimate) estimate = track_local_map(*frame, grid, std::move(*estimate));
+  }
+  if (estimate) state_ = TrackingState::kTracking;
+  if (!estimate && local_) state_ = TrackingState::kLost;
+  TrackedFrame result = report(frame, estimate);
+  if (estimate && (!local_ || needs_keyframe(*frame, *estimate))) {
+    request = make_request(frame, *estimate);
+    result.is_keyframe = true;
+  }
+  remember(frame, estimate);
+  return result;
+}
+
+Tracker::OptionalEstimate Tracker::start(const Frame& frame) const {
+  const auto with_depth = std::count_if(frame.depths.begin(), frame.depths.end(),
+                                        [](float depth) { return depth > 0.0F; });
+  if (with_depth < options_.min_start_points) return std::nullopt;
+  return Estimate{};
+}
+
+Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame,
+                                                    const KeypointGrid& grid) const {
+  if (state_ == TrackingState::kTracking) {
+    if (OptionalEstimate estimate = track_by_prediction(frame, grid)) return estimate;
+  }
+  if (OptionalEstimate estimate = track_by_descriptors(frame, last_)) return estimate;
+  const LastFrame reference{local_->reference_frame, local_->world_from_reference,
+                            local_->reference_points};
+  if (OptionalEstimate estimate = track_by_descriptors(frame, reference)) return estimate;
+  return track_whole_local_map(frame);
+}
+
+Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame,
+                                                       const KeypointGrid& grid) const {
+  const SE3 predicted = last_.world_from_camera * last_from_current_;
+  const SE3 camera_from_world = predicted.inverse();
+  const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
+  std::vector<PixelPrediction> predictions;
+  std::vector<std::size_t> source;
+  for (std::size_t i = 0; i < last_known.size(); ++i) {
+    const Eigen::Vector3d p = camera_from_world * last_known[i].position;
+    if (p.z() <= 0.05) continue;
+    const Eigen::Vector2d pixel = camera_.project(p);
+    if (!camera_.contains(pixel)) continue;
+    predictions.push_back({last_known[i].keypoint, pixel.cast<float>(),
+                           scaled(options_.search_radius), static_cast<float>(p.z())});
+    source.push_back(i);
+  }
+  const GuidedMatchingOptions matching{traits_.max_distance, static_cast<float>(options_.ratio),
+                                       static_cast<float>(options_.depth_tolerance)};
+  std::vector<KnownPoint> known;
+  for (const Match& m :
+       match_guided(predictions, last_.frame->descriptors, frame, grid, {}, matching)) {
+    KnownPoint point = last_known[source[static_cast<std::size_t>(m.a)]];
+    point.keypoint = m.b;
+    known.push_back(point);
+  }
+  if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
+  const std::size_t matched = known.size();
+  OptionalEstimate estimate = optimise(frame, predicted, std::move(known));
+  // A wrong prediction leaves matches that agree on nothing.
+  if (estimate && 2 * estimate->known.size() < matched) return std::nullopt;
+  return estimate;
+}
+
+Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame,
+                                                        const LastFrame& source) const {
+  const std::vector<KnownPoint> source_known = known_points(source, *local_, camera_);
+  std::vector<int> known_of(source.frame->size(), -1);
+  for (std::size_t i = 0; i < source_known.size(); ++i) {
+    known_of[static_cast<std::size_t>(source_known[i].keypoint)] = static_cast<int>(i);
+  }
+  std::vector<KnownPoint> known;
+  for (const Match& m :
+       match_mutual(source.frame->descriptors, frame.descriptors, traits_.max_distance, 0.95F)) {
+    const int index = known_of[static_cast<std::size_t>(m.a)];
+    if (index < 0) continue;
+    KnownPoint point = source_known[static_cast<std::size_t>(index)];
+    point.keypoint = m.b;
+    known.push_back(point);
+  }
+  return estimate_by_pnp(frame, std::move(known));
+}
+
+Tracker::OptionalEstimate Tracker::track_whole_local_map(const Frame& frame) const {
+  std::vector<KnownPoint> known;
+  for (const Match& m : match_mutual(local_->descriptors, frame.descriptors, traits_.max_distance,
+                                     static_cast<float>(options_.ratio))) {
+    const std::size_t i = static_cast<std::size_t>(m.a);
+    known.push_back({m.b, local_->ids[i], local_->positions[i]});
+  }
+  return estimate_by_pnp(frame, std::move(known));
+}
+
+Tracker::OptionalEstimate Tracker::estimate_by_pnp(const Frame& frame,
+                                                   std::vector<KnownPoint> known) const {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector2d> pixels;
+  std::vector<float> depths;
+  for (const KnownPoint& k : known) {
+    const std::size_t i = static_cast<std::size_t>(k.keypoint);
+    points.push_back(k.position);
+    pixels.push_back(frame.pixels[i].cast<double>());
+    depths.push_back(frame.depths[i]);
+  }
+  const std::optional<PnpReport> pnp = solve_pnp(camera_, points, pixels, depths, options_.pnp);
+  if (!pnp) return std::nullopt;
+  keep_inliers(known, pnp->inlier);
+  OptionalEstimate estimate = optimise(frame, pnp->world_from_camera, std::move(known));
+  if (estimate) estimate->recovered = true;
+  return estimate;
+}
+
+Tracker::OptionalEstimate Tracker::optimise(const Frame& frame, const SE3& start,
+                                            std::vector<KnownPoint> known) const {
+  const PoseReport pose =
+      optimize_pose(camera_, start, pose_observations(frame, known, camera_), options_.pose);
+  if (!pose.success || pose.inliers < options_.min_inliers) return std::nullopt;
+  keep_inliers(known, pose.inlier);
+  Estimate estimate;
+  estimate.world_from_camera = pose.world_from_camera;
+  estimate.known = std::move(known);
+  estimate.rms_pixels = pose.rms_pixels;
+  estimate.map_points = count_map_points(estimate.known);
+  return estimate;
+}
+
+std::vector<PixelPrediction> Tracker::predict_local_points(const SE3& world_from_camera,
+                                                           const std::vector<char>& known) const {
+  const SE3 camera_from_world = world_from_camera.inverse();
+  const double min_cosine = std::cos(options_.max_view_angle * kDegree);
+  std::vector<PixelPrediction> predictions;
+  for (std::size_t i = 0; i < local_->size(); ++i) {
+    if (known[i] != 0) continue;
+    const Eigen::Vector3d p = camera_from_world * local_->positions[i];
+    if (p.z() <= 0.05) continue;
+    const Eigen::Vector2d pixel = camera_.project(p);
+    if (!camera_.contains(pixel)) continue;
+    const Eigen::Vector3d ray = world_from_camera.translation() - local_->positions[i];
+    const double distance = ray.norm();
+    if (ray.dot(local_->normals[i]) < min_cosine * distance) continue;
+    const double ratio = distance / static_cast<double>(local_->distances[i]);
+    if (ratio > options_.max_distance_ratio || ratio * options_.max_distance_ratio < 1.0) continue;
+    predictions.push_back({static_cast<int>(i), pixel.cast<float>(), scaled(options_.local_radius),
+                           static_cast<float>(p.z())});
+  }
+  return predictions;
+}
+
+Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const KeypointGrid& grid,
+                                                   Estimate estimate) {
+  std::vector<char> taken(frame.size(), 0);
+  std::vector<char> matched(local_->size(), 0);
+  std::vector<KnownPoint> known;
+  std::vector<KnownPoint> temporary;
+  for (const KnownPoint& k : estimate.known) {
+    const int index = k.id == kNoId ? -1 : local_->find(k.id);
+    if (index < 0) {
+      temporary.push_back(k);
+      continue;
+    }
+    matched[static_cast<std::size_t>(index)] = 1;
+    taken[static_cast<std::size_t>(k.keypoint)] = 1;
+    known.push_back(k);
+  }
+  const std::vector<PixelPrediction> predictions =
+      predict_local_points(estimate.world_from_camera, matched);
+  const GuidedMatchingOptions matching{traits_.max_distance, static_cast<float>(options_.ratio),
+                                       static_cast<float>(options_.depth_tolerance)};
+  for (const Match& m :
+       match_guided(predictions, local_->descriptors, frame, grid, taken, matching)) {
+    const std::size_t i =
+        static_cast<std::size_t>(predictions[static_cast<std::size_t>(m.a)].descriptor_row);
+    known.push_back({m.b, local_->ids[i], local_->positions[i]});
+    taken[static_cast<std::size_t>(m.b)] = 1;
+  }
+  for (const KnownPoint& k : known) ++counts_[k.id].visible;
+  for (const PixelPrediction& p : predictions) {
+    ++counts_[local_->ids[static_cast<std::size_t>(p.descriptor_row)]].visible;
+  }
+  if (static_cast<int>(known.size()) < options_.temporary_points_below) {
+    for (const KnownPoint& k : temporary) {
+      if (taken[static_cast<std::size_t>(k.keypoint)] == 0) known.push_back(k);
+    }
+  }
+  OptionalEstimate refined = optimise(frame, estimate.world_from_camera, std::move(known));
+  if (!refined) return std::nullopt;
+  refined->recovered = estimate.recovered;
+  for (const KnownPoint& k : refined->known) {
+    if (k.id != kNoId) ++counts_[k.id].found;
+  }
+  return refined;
+}
+
+bool Tracker::needs_keyframe(const Frame& frame, const Estimate& estimate) const {
+  return is_keyframe_due({frames_since_keyframe_, estimate.map_points, local_->reference_tracked,
+                          local_->world_from_reference.inverse() * estimate.world_from_camera},
+                         frame, points_by_keypoint(frame, estimate), options_.keyframe);
+}
+
+std::vector<PointId> Tracker::points_by_keypoint(const Frame& frame,
+                                                 const Estimate& estimate) const {
+  std::vector<PointId> points(frame.size(), kNoId);
+  for (const KnownPoint& k : estimate.known) points[static_cast<std::size_t>(k.keypoint)] = k.id;
+  return points;
+}
+
+KeyframeRequest Tracker::make_request(const FramePtr& frame, const Estimate& estimate) {
+  KeyframeRequest request;
+  request.frame = frame;
+  if (local_) {
+    request.reference = local_->reference;
+    request.reference_from_camera =
+        local_->world_from_reference.inverse() * estimate.world_from_camera;
+  }
+  request.points = points_by_keypoint(*frame, estimate);
+  for (auto& [id, count] : counts_) request.counts.push_back({id, count.visible, count.found});
+  std::sort(request.counts.begin(), request.counts.end(),
+            [](const PointCount& a, const PointCount& b) { return a.point < b.point; });
+  counts_.clear();
+  frames_since_keyframe_ = 0;
+  return request;
+}
+
+TrackedFrame Tracker::report(const FramePtr& frame, const OptionalEstimate& estimate) const {
+  TrackedFrame result;
+  result.index = frame->index;
+  result.stamp = frame->stamp;
+  result.state = state_;
+  result.keypoints = static_cast<int>(frame->size());
+  if (!estimate) return result;
+  result.world_from_camera = estimate->world_from_camera;
+  result.inliers = estimate->map_points;
+  result.rms_pixels = estimate->rms_pixels;
+  result.recovered = estimate->recovered;
+  if (local_) {
+    result.reference = local_->reference;
+    result.reference_from_camera =
+        local_->world_from_reference.inverse() * estimate->world_from_camera;
+  }
+  return result;
+}
+
+void Tracker::remember(const FramePtr& frame, const OptionalEstimate& estimate) {
+  if (!estimate) {
+    last_from_current_ = SE3();  // no speed is known after a gap; the last good frame is kept
+    return;
+  }
+  if (last_.frame) {
+    last_from_current_ = last_.world_from_camera.inverse() * estimate->world_from_camera;
+  }
+  last_ = {frame, estimate->world_from_camera, points_by_keypoint(*frame, *estimate)};
+}
+
+float Tracker::scaled(double pixels_at_640) const {
+  return static_cast<float>(pixels_at_640 * camera_.width / 640.0);
+}
+
+}  // namespace dxslam

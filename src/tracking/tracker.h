@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/features.h"
+#include "map/local_map.h"
+#include "matching/guided_matching.h"
+#include "tracking/frame_matches.h"
+#include "tracking/tracker_options.h"
+#include "tracking/tracking_types.h"
+
+namespace dxslam {
+
+/// Finds the pose of every frame against the local map (paper III.A, "Tracking"): predict, match
+/// against the last frame, optimise, match against the local map, optimise, decide on a keyframe.
+/// Belongs to one thread. Knows the map only through snapshots.
+class Tracker {
+ public:
+  Tracker(const Camera& camera, const DescriptorTraits& traits, const TrackerOptions& options);
+
+  /// The newest snapshot; poses follow the keyframe they hang on.
+  void set_local_map(LocalMapPtr local_map);
+  bool has_local_map() const { return local_ != nullptr; }
+
+  /// Tracks one frame; frames come in time order. `request` is filled when it should become a
+  /// keyframe (the first usable frame always does).
+  TrackedFrame track(const FramePtr& frame, std::optional<KeyframeRequest>& request);
+
+ private:
+  struct Estimate {
+    SE3 world_from_camera;
+    std::vector<KnownPoint> known;  // inliers only
+    double rms_pixels = 0.0;
+    bool recovered = false;
+    int map_points = 0;
+  };
+  using OptionalEstimate = std::optional<Estimate>;
+
+  OptionalEstimate start(const Frame& frame) const;
+  OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid) const;
+  OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid) const;
+  OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source) const;
+  OptionalEstimate track_whole_local_map(const Frame& frame) const;
+  OptionalEstimate estimate_by_pnp(const Frame& frame, std::vector<KnownPoint> known) const;
+  OptionalEstimate track_local_map(const Frame& frame, const KeypointGrid& grid, Estimate estimate);
+  std::vector<PixelPrediction> predict_local_points(const SE3& world_from_camera,
+                                                    const std::vector<char>& known) const;
+  OptionalEstimate optimise(const Frame& frame, const SE3& start,
+                            std::vector<KnownPoint> known) const;
+  bool needs_keyframe(const Frame& frame, const Estimate& estimate) const;
+  TrackedFrame report(const FramePtr& frame, const OptionalEstimate& estimate) const;
+  void remember(const FramePtr& frame, const OptionalEstimate& estimate);
+  KeyframeRequest make_request(const FramePtr& frame, const Estimate& estimate);
+  std::vector<PointId> points_by_keypoint(const Frame& frame, const Estimate& estimate) const;
+  float scaled(double pixels_at_640) const;
+
+  Camera camera_;
+  DescriptorTraits traits_;
+  TrackerOptions options_;
+  LocalMapPtr local_;
+  TrackingState state_ = TrackingState::kNotStarted;
+  LastFrame last_;
+  SE3 last_from_current_;  // constant velocity: the motion of the last frame
+  std::unordered_map<PointId, PointCount> counts_;
+  int frames_since_keyframe_ = 0;
+};
+
+}  // namespace dxslam

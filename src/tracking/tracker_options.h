@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include "geometry/pnp.h"
+#include "optimization/pose_optimizer.h"
+
+namespace dxslam {
+
+/// When a frame becomes a keyframe.
+struct KeyframeOptions {
+  int min_gap = 1;
+  int max_gap = 30;
+  double min_tracked_ratio = 0.8;
+  double max_rotation = 15.0;
+  double max_translation = 0.12;
+  double max_new_ratio = 0.55;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit("min_gap", self.min_gap, {1, 1000}, "frames", "fewest frames between two keyframes");
+    visit("max_gap", self.max_gap, {1, 100000}, "frames",
+          "after so many frames any motion makes a keyframe");
+    visit("min_tracked_ratio", self.min_tracked_ratio, {0, 1}, "",
+          "share of the reference keyframe's points below which a keyframe is due");
+    visit("max_rotation", self.max_rotation, {0.1, 180}, "degrees",
+          "turn against the reference keyframe that makes a keyframe due");
+    visit("max_translation", self.max_translation, {0.001, 10}, "",
+          "move against the reference keyframe, relative to the median depth");
+    visit("max_new_ratio", self.max_new_ratio, {0, 1}, "",
+          "share of keypoints with depth that the map does not know");
+  }
+};
+
+struct TrackerOptions {
+  int min_start_points = 50;
+  int min_inliers = 12;
+  double search_radius = 20.0;
+  double local_radius = 6.0;
+  double ratio = 0.9;
+  int min_predicted_matches = 40;
+  double max_view_angle = 70.0;
+  double max_distance_ratio = 3.0;
+  double depth_tolerance = 0.2;
+  int temporary_points_below = 60;
+  KeyframeOptions keyframe;
+  PoseOptimizerOptions pose;
+  PnpOptions pnp;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit("min_start_points", self.min_start_points, {10, 100000}, "points",
+          "keypoints with depth that the first frame needs");
+    visit("min_inliers", self.min_inliers, {6, 1000}, "points", "fewer mean that tracking is lost");
+    visit("search_radius", self.search_radius, {1, 500}, "pixels at 640 wide",
+          "window around the pixel predicted by constant velocity");
+    visit("local_radius", self.local_radius, {0.5, 500}, "pixels at 640 wide",
+          "window around the pixel of a local map point");
+    visit("ratio", self.ratio, {0.1, 1}, "", "nearest to second nearest descriptor distance");
+    visit("min_predicted_matches", self.min_predicted_matches, {6, 100000}, "matches",
+          "with fewer the whole frame is matched by descriptors alone");
+    visit("max_view_angle", self.max_view_angle, {1, 180}, "degrees",
+          "angle to the mean direction from which a point was seen");
+    visit("max_distance_ratio", self.max_distance_ratio, {1, 100}, "",
+          "how much nearer or farther than before a point may be seen");
+    visit("depth_tolerance", self.depth_tolerance, {0.001, 10}, "",
+          "relative difference of predicted and measured depth");
+    visit("temporary_points_below", self.temporary_points_below, {0, 100000}, "points",
+          "with fewer map points the last frame's depth helps out");
+    visit.group("keyframe", self.keyframe);
+    visit.group("pose", self.pose);
+    visit.group("pnp", self.pnp);
+  }
+};
+
+}  // namespace dxslam

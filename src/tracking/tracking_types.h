@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "map/map_types.h"
+
+namespace dxslam {
+
+enum class TrackingState { kNotStarted, kTracking, kLost };
+
+/// What tracking found for one frame. The pose hangs on a keyframe, so that it stays right when
+/// mapping moves the keyframe later.
+struct TrackedFrame {
+  std::int64_t index = 0;
+  double stamp = 0.0;
+  TrackingState state = TrackingState::kNotStarted;
+  SE3 world_from_camera;  ///< as known when the frame was tracked
+  KeyframeId reference = kNoId;
+  SE3 reference_from_camera;
+  int keypoints = 0;
+  int inliers = 0;  ///< map points that agree with the pose
+  bool is_keyframe = false;
+  bool recovered = false;   ///< found by descriptors alone, without a predicted pose
+  double rms_pixels = 0.0;  ///< of the inliers
+};
+
+/// In how many frames a point should have been seen and was matched, since the last report.
+struct PointCount {
+  PointId point = kNoId;
+  std::uint32_t visible = 0;
+  std::uint32_t found = 0;
+};
+
+/// Message from tracking to mapping: make this frame a keyframe.
+struct KeyframeRequest {
+  FramePtr frame;
+  KeyframeId reference = kNoId;  ///< kNoId: this is the first keyframe, at the origin
+  SE3 reference_from_camera;
+  std::vector<PointId> points;  ///< one a keypoint; kNoId: none
+  std::vector<PointCount> counts;
+};
+
+}  // namespace dxslam
