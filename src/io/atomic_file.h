@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace dxslam {
+
+/// Replaces `path` by a file of these bytes, or leaves it as it was: a temporary file in the same
+/// folder is written, flushed to the disk and renamed. Throws InputError with the reason (missing
+/// folder, no permission, full disk).
+void write_file_atomically(const std::string& path, std::string_view bytes);
+
+}  // namespace dxslam

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "io/calibration.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/calibration_presets.h"
+#include "io/options_yaml.h"
+
+namespace dxslam {
+namespace {
+
+// The fields of Camera as options, so that reading and dumping are those of every options struct.
+struct CameraFields : Camera {
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit("width", self.width, {16, 16384}, "pixels", "image width");
+    visit("height", self.height, {16, 16384}, "pixels", "image height");
+    visit("fx", self.fx, {1, 1e5}, "pixels", "focal length");
+    visit("fy", self.fy, {1, 1e5}, "pixels", "focal length");
+    visit("cx", self.cx, {-16384, 32768}, "pixels", "principal point, centre of pixel (0, 0) is 0");
+    visit("cy", self.cy, {-16384, 32768}, "pixels", "principal point");
+    visit("k1", self.k1, {-100, 100}, "", "radial distortion");
+    visit("k2", self.k2, {-100, 100}, "", "radial distortion");
+    visit("p1", self.p1, {-100, 100}, "", "tangential distortion");
+    visit("p2", self.p2, {-100, 100}, "", "tangential distortion");
+    visit("k3", self.k3, {-100, 100}, "", "radial distortion");
+    visit("fps", self.fps, {1e-3, 1e4}, "1/s", "nominal frame rate");
+    visit("depth_factor", self.depth_factor, {1e-3, 1e6}, "1/m", "raw depth of one metre");
+    visit("depth_baseline", self.depth_baseline, {1e-4, 10}, "m", "baseline of the depth sensor");
+    visit("max_depth", self.max_depth, {0.01, 1e4}, "m", "farther readings count as missing");
+  }
+};
+
+void require_intrinsics(const std::string& yaml, const std::string& where) {
+  YamlMap map = YamlMap::parse(yaml, where);
+  for (const char* name : {"width", "height", "fx", "fy", "cx", "cy"}) {
+    std::string value;
+    if (map.take(name, value)) continue;
+    throw InputError(
+        fmt::format("{}: no {} in it, expected width, height, fx, fy, cx and cy", where, name));
+  }
+}
+
+}  // namespace
+
+Camera parse_camera(const std::string& yaml, const std::string& where) {
+  CameraFields camera;
+  read_options_yaml(yaml, where, camera);
+  require_intrinsics(yaml, where);
+  camera.validate(where);
+  return camera;
+}
+
+Camera load_camera(const std::string& name_or_file) {
+  if (name_or_file.find_first_of("/.") == std::string::npos) {
+    return parse_camera(camera_preset_text(name_or_file), "preset " + name_or_file);
+  }
+  return parse_camera(read_file(name_or_file, "a camera file (YAML)"), name_or_file);
+}
+
+std::vector<std::string> camera_preset_names() {
+  std::vector<std::string> names;
+  for (const CameraPreset& preset : camera_presets()) names.push_back(preset.name);
+  return names;
+}
+
+const std::string& camera_preset_text(const std::string& name) {
+  std::string known;
+  for (const CameraPreset& preset : camera_presets()) {
+    if (preset.name == name) return preset.yaml;
+    known += (known.empty() ? "" : ", ") + preset.name;
+  }
+  throw InputError(fmt::format("no camera preset {}, expected a YAML file or one of {}",
+                               in_quotes(name), known));
+}
+
+std::string dump_camera(const Camera& camera, const std::string& title) {
+  CameraFields fields;
+  static_cast<Camera&>(fields) = camera;
+  return "# " + title + "\n" + dump_options_yaml(fields);
+}
+
+}  // namespace dxslam

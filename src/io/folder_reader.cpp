@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/error.h"
+#include "io/image_file.h"
+#include "io/sequence_formats.h"
+#include "io/text_file.h"
+
+namespace dxslam {
+namespace {
+
+constexpr double kFramesASecond = 10.0;
+
+bool is_image(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
+}
+
+bool all_digits(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+// Numbers by value (without leading zeros the longer one is larger), other names by their letters.
+bool name_less(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const std::string x = a.stem().string();
+  const std::string y = b.stem().string();
+  if (!all_digits(x) || !all_digits(y)) return a.filename() < b.filename();
+  const std::string significant_x = x.substr(std::min(x.find_first_not_of('0'), x.size()));
+  const std::string significant_y = y.substr(std::min(y.find_first_not_of('0'), y.size()));
+  if (significant_x.size() != significant_y.size()) {
+    return significant_x.size() < significant_y.size();
+  }
+  return significant_x < significant_y;
+}
+
+std::vector<std::filesystem::path> list_images(const std::string& folder) {
+  std::vector<std::filesystem::path> images;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (is_image(entry.path())) images.push_back(entry.path());
+  }
+  // Numbers first: comparing numbers with other names by letters would be no order.
+  const auto other = std::partition(images.begin(), images.end(), [](const auto& path) {
+    return all_digits(path.stem().string());
+  });
+  std::sort(images.begin(), other, name_less);
+  std::sort(other, images.end(), name_less);
+  if (images.empty()) {
+    throw InputError(fmt::format("{}: no image in it, expected PNG or JPEG files", folder));
+  }
+  return images;
+}
+
+// The first readable image says how large all of them are.
+cv::Size image_size(const std::vector<std::filesystem::path>& images) {
+  std::string first_error;
+  for (std::size_t i = 0; i < std::min<std::size_t>(images.size(), 10); ++i) {
+    try {
+      return read_color_image(images[i].string()).size();
+    } catch (const InputError& e) {
+      if (first_error.empty()) first_error = e.what();
+    }
+  }
+  throw InputError(first_error);
+}
+
+Camera read_intrinsics(const std::string& path, cv::Size size) {
+  const std::vector<TextRow> rows = read_table(path, "a 3x3 camera matrix");
+  Eigen::Matrix3d k;
+  if (rows.size() != 3) {
+    throw InputError(fmt::format("{}: {} rows, expected a 3x3 camera matrix", path, rows.size()));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const TextRow& row = rows[static_cast<std::size_t>(i)];
+    if (row.fields.size() != 3) {
+      throw InputError(fmt::format("{}: {} columns, expected a 3x3 camera matrix",
+                                   at_line(path, row.line), row.fields.size()));
+    }
+    for (int j = 0; j < 3; ++j) {
+      k(i, j) = finite_field(path, row, static_cast<std::size_t>(j), "camera matrix element");
+    }
+  }
+  if (k(0, 1) != 0 || k(1, 0) != 0 || k(2, 0) != 0 || k(2, 1) != 0 || k(2, 2) != 1) {
+    throw InputError(
+        fmt::format("{}: expected a camera matrix 'fx 0 cx, 0 fy cy, 0 0 1' without skew", path));
+  }
+  Camera camera;
+  camera.width = size.width;
+  camera.height = size.height;
+  camera.fx = k(0, 0);
+  camera.fy = k(1, 1);
+  camera.cx = k(0, 2);
+  camera.cy = k(1, 2);
+  camera.fps = kFramesASecond;
+  camera.validate(path);
+  return camera;
+}
+
+std::vector<SE3> read_poses(const std::string& path, std::size_t images) {
+  std::vector<SE3> poses;
+  for (const TextRow& row : read_table(path, "one 4x4 pose a line")) {
+    if (row.fields.size() != 16) {
+      throw InputError(fmt::format("{}: {} columns, expected 16 (a 4x4 pose row by row)",
+                                   at_line(path, row.line), row.fields.size()));
+    }
+    double values[16];
+    for (std::size_t i = 0; i < 16; ++i) values[i] = finite_field(path, row, i, "pose element");
+    poses.push_back(pose_from_row_major(values, at_line(path, row.line)));
+  }
+  if (poses.size() != images) {
+    throw InputError(fmt::format("{}: {} poses, expected one for each of the {} images", path,
+                                 poses.size(), images));
+  }
+  return poses;
+}
+
+}  // namespace
+
+SequenceListing list_folder(const std::string& folder, const SequenceOptions& options) {
+  namespace fs = std::filesystem;
+  SequenceListing listing;
+  listing.name = folder_name(folder);
+  const auto images = list_images(in_folder(folder, "images"));
+  if (!use_explicit_calibration(folder, options, listing)) {
+    listing.calibration_source = in_folder(folder, "K.txt");
+    listing.camera = read_intrinsics(listing.calibration_source, image_size(images));
+  }
+  const bool has_depth = fs::is_directory(in_folder(folder, "depth"));
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const std::string depth = "depth/" + images[i].stem().string() + ".png";
+    listing.frames.push_back({static_cast<double>(i) / listing.camera.fps, images[i].string(),
+                              has_depth ? in_folder(folder, depth) : std::string()});
+  }
+  const std::string poses = in_folder(folder, "poses.txt");
+  if (fs::exists(poses)) {
+    for (const SE3& pose : read_poses(poses, images.size())) {
+      const std::size_t i = listing.ground_truth.size();
+      listing.ground_truth.push_back({listing.frames[i].stamp, pose});
+    }
+  }
+  return listing;
+}
+
+}  // namespace dxslam

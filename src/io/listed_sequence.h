@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/sequence.h"
+
+namespace dxslam {
+
+/// Files of one frame. `depth` is empty for a recording without depth.
+struct ListedFrame {
+  double stamp = 0.0;
+  std::string color;
+  std::string depth;
+};
+
+/// What a format reader finds out about a recording; what all formats then have in common is done
+/// by the sequence made from it.
+struct SequenceListing {
+  std::string name;
+  Camera camera;
+  std::string calibration_source;  ///< file or preset, for messages
+  std::vector<ListedFrame> frames;
+  std::vector<SkippedFrame> skipped;  ///< left out already
+  Trajectory ground_truth;
+  /// Raw CV_16UC1 depth to raw CV_16UC1 depth registered to colour; none = is registered.
+  std::function<cv::Mat(const cv::Mat&)> register_depth;
+};
+
+/// Checks the listing and decodes up to three of the first ten frames. Throws InputError if none
+/// of these is usable or their median depth is not that of a scene (0.05 to 30 m).
+std::unique_ptr<RgbdSequence> make_sequence(SequenceListing listing);
+
+}  // namespace dxslam

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/sequence.h"
+
+namespace dxslam {
+
+struct SequenceOptions {
+  std::string format = "auto";  ///< auto, or one of sequence_formats()
+  /// Text file "stamp colour stamp depth" a line that replaces the search for the nearest stamp,
+  /// relative paths as in the lists (TUM, OpenLORIS); empty = none.
+  std::string association;
+  /// Camera preset or YAML file; empty = calibration.yaml or camera.yaml of the folder, else what
+  /// the format or the folder's name says.
+  std::string calibration;
+  double max_association_s = 0.02;  ///< largest difference of colour and depth stamps, seconds
+};
+
+/// tum, 7scenes, openloris, folder.
+const std::vector<std::string>& sequence_formats();
+
+/// Opens a recording. Lists, calibration and trajectories are read and checked at once, a few
+/// images are decoded to check size and depth scale, all others are read on demand.
+/// A colour image without a depth image near enough in time is left out and recorded in skipped()
+/// with the index of the frame behind it.
+///
+/// Formats:
+/// - tum: rgb.txt, depth.txt ("stamp file"), optional groundtruth.txt.
+/// - openloris: color.txt, aligned_depth.txt, optional groundtruth.txt (pose of base_link, which is
+///   moved to the colour camera), sensors.yaml, trans_matrix.yaml.
+/// - 7scenes: frame-NNNNNN.{color.png|color.jpg,depth.png,pose.txt}; stamp NNNNNN / 30 s; the depth
+///   camera is registered to the colour camera.
+/// - folder: images/, optional depth/ (same names, .png), poses.txt (4x4 world_from_camera a row),
+///   K.txt; images in the order of their names; stamp row / fps, 10 frames a second by default.
+///
+/// Throws InputError, one sentence with file, line and what was expected, for everything that makes
+/// the recording as a whole unusable. Single bad frames are left to RgbdSequence::read.
+std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
+                                            const SequenceOptions& options = {});
+
+/// The true trajectory: of a file in TUM format or, for a folder, of the recording in it.
+/// Throws InputError if there is none.
+Trajectory load_ground_truth(const std::string& file_or_folder);
+
+}  // namespace dxslam
