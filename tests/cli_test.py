@@ -1,0 +1,333 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright 2026 The dxslam authors
+"""Runs the program as a user does: commands, files, exit codes.
+
+usage: cli_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
+"""
+import json
+import math
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
+FRAMES = 60
+TIMEOUT = 300
+
+BAD_USAGE, BAD_INPUT, TRACKING_FAILED, INTERRUPTED = 2, 3, 4, 5
+
+
+def dxslam(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, timeout=TIMEOUT)
+
+
+def poses(file):
+    """Rows of a TUM trajectory as lists of eight numbers."""
+    lines = [line for line in Path(file).read_text().splitlines() if not line.startswith("#")]
+    return [[float(word) for word in line.split()] for line in lines]
+
+
+class Recorded(unittest.TestCase):
+    """Tests that share one small synthetic recording, which they must not change."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="dxslam_cli_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        cls.recording = cls.folder / "recording"
+        done = dxslam("synth", cls.recording, "--frames", FRAMES, "--seed", 7)
+        if done.returncode:
+            raise RuntimeError(f"dxslam synth: exit {done.returncode}: {done.stderr}")
+
+    def run_orb(self, out, *options, recording=None):
+        return dxslam("run", recording or self.recording, "--features", "orb", "--out", out,
+                      *options)
+
+    def succeed(self, done):
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def copy(self):
+        """A copy of the recording for the test to break."""
+        copy = self.folder / self.id().split(".")[-1]
+        shutil.copytree(self.recording, copy)
+        return copy
+
+    def refuse(self, done, *mentioned):
+        """The program said no in one sentence that holds all of `mentioned`."""
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        lines = done.stderr.strip().splitlines()
+        self.assertEqual(len(lines), 1, done.stderr)
+        self.assertTrue(lines[0].startswith("dxslam: "), lines[0])
+        for text in mentioned:
+            self.assertIn(str(text), lines[0])
+
+
+class Usage(unittest.TestCase):
+    def test_version(self):
+        done = dxslam("--version")
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stdout, r"^dxslam \d+\.\d+\.\d+")
+
+    def test_help_names_the_commands(self):
+        done = dxslam("--help")
+        self.assertEqual(done.returncode, 0)
+        for command in ("run", "eval", "synth", "config"):
+            self.assertRegex(done.stdout, rf"(?m)^\s+{command}\b")
+
+    def test_every_command_has_help(self):
+        for command in (["run"], ["eval", "ate"], ["eval", "rpe"], ["synth"], ["config", "dump"]):
+            done = dxslam(*command, "--help")
+            self.assertEqual(done.returncode, 0, command)
+            self.assertIn("--help", done.stdout)
+
+    def test_unknown_words_are_bad_usage(self):
+        for words in ([], ["fly"], ["run"], ["run", "x", "--fly"], ["eval", "ate", "one"],
+                      ["run", "x", "--stride", "two"]):
+            done = dxslam(*words)
+            self.assertEqual(done.returncode, BAD_USAGE, words)
+            self.assertTrue(done.stderr, words)
+
+
+class Config(Recorded):
+    def dumped(self):
+        text = self.succeed(dxslam("config", "dump")).stdout
+        file = self.folder / "dumped.yaml"
+        file.write_text(text)
+        return text, file
+
+    def run_with(self, file):
+        return self.run_orb(self.folder / "out", "--max-frames", 3, "--config", file)
+
+    def test_dump_is_read_back(self):
+        text, file = self.dumped()
+        self.assertIn("tracking:", text)
+        self.succeed(self.run_with(file))
+
+    def test_unknown_key_is_refused(self):
+        _, file = self.dumped()
+        wrong = self.folder / "unknown.yaml"
+        wrong.write_text(file.read_text() + "speed_of_light: 3\n")
+        self.refuse(self.run_with(wrong), "speed_of_light", "unknown.yaml")
+
+    def test_value_out_of_range_is_refused(self):
+        text, _ = self.dumped()
+        wrong = self.folder / "range.yaml"
+        wrong.write_text(re.sub(r"(?m)^(queued_frames):.*$", r"\1: 0", text))
+        self.refuse(self.run_with(wrong), "queued_frames", "range.yaml")
+
+    def test_missing_file_is_refused(self):
+        self.refuse(self.run_with(self.folder / "nowhere.yaml"), "nowhere.yaml")
+
+
+class BrokenInput(Recorded):
+    def refuse_run(self, recording, *mentioned):
+        self.refuse(self.run_orb(self.folder / "out", recording=recording), *mentioned)
+
+    def edit(self, file, change):
+        lines = file.read_text().splitlines()
+        change(lines)
+        file.write_text("\n".join(lines) + "\n")
+
+    def first_row(self, lines):
+        return next(i for i, line in enumerate(lines) if not line.startswith("#"))
+
+    def test_missing_folder(self):
+        self.refuse_run(self.folder / "nowhere", "nowhere")
+
+    def test_folder_of_no_known_format(self):
+        empty = self.folder / "empty"
+        empty.mkdir()
+        self.refuse_run(empty, "empty")
+
+    def test_empty_list(self):
+        copy = self.copy()
+        (copy / "rgb.txt").write_text("# nothing\n")
+        self.refuse_run(copy, "rgb.txt")
+
+    def test_stamp_that_is_no_number(self):
+        copy = self.copy()
+
+        def change(lines):
+            row = self.first_row(lines) + 4
+            lines[row] = "nan " + lines[row].split()[1]
+            self.line = row + 1
+        self.edit(copy / "rgb.txt", change)
+        self.refuse_run(copy, f"rgb.txt:{self.line}", "nan")
+
+    def test_stamps_that_go_backwards(self):
+        copy = self.copy()
+
+        def change(lines):
+            row = self.first_row(lines) + 10
+            lines[row], lines[row - 5] = lines[row - 5], lines[row]
+            self.line = row - 5 + 2
+        self.edit(copy / "rgb.txt", change)
+        self.refuse_run(copy, f"rgb.txt:{self.line}")
+
+    def test_unknown_features(self):
+        self.refuse(dxslam("run", self.recording, "--features", "psychic", "--out",
+                           self.folder / "out"), "psychic")
+
+    def test_one_broken_frame_is_skipped_and_reported(self):
+        copy = self.copy()
+        depth = sorted((copy / "depth").iterdir())[20]
+        depth.write_bytes(depth.read_bytes()[:200])
+        out = self.folder / "skipped"
+        done = self.succeed(self.run_orb(out, recording=copy))
+        self.assertIn(depth.name, done.stdout + done.stderr)
+        summary = json.loads((out / "summary.json").read_text())
+        self.assertEqual(len(summary["skipped"]), 1)
+        self.assertIn(depth.name, json.dumps(summary["skipped"]))
+        self.assertEqual(len(poses(out / "trajectory.txt")), FRAMES - 1)
+
+    def test_output_folder_that_cannot_be_made(self):
+        file = self.folder / "file"
+        file.write_text("")
+        self.refuse(self.run_orb(file / "out"), "file")
+
+    def test_evaluation_of_broken_trajectories(self):
+        good = self.recording / "groundtruth.txt"
+        bad = self.folder / "bad.txt"
+        bad.write_text("1.0 0 0 0 0 0 0 1\n2.0 0 0\n")
+        self.refuse(dxslam("eval", "ate", good, bad), "bad.txt:2")
+        bad.write_text("1e6 0 0 0 0 0 0 1\n")
+        self.refuse(dxslam("eval", "ate", good, bad))
+        self.refuse(dxslam("eval", "ate", good, self.folder / "none.txt"), "none.txt")
+
+
+class EndToEnd(Recorded):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = cls.folder / "result"
+        cls.done = dxslam("run", cls.recording, "--features", "orb", "--out", cls.out)
+
+    def test_ends_well(self):
+        self.succeed(self.done)
+
+    def test_tracks_every_frame(self):
+        rows = poses(self.out / "trajectory.txt")
+        self.assertEqual(len(rows), FRAMES)
+        for row in rows:
+            self.assertEqual(len(row), 8)
+            self.assertAlmostEqual(math.hypot(*row[4:]), 1.0, places=5)
+        stamps = [row[0] for row in rows]
+        self.assertEqual(stamps, sorted(set(stamps)))
+
+    def test_keyframes_are_frames(self):
+        stamps = {row[0] for row in poses(self.out / "trajectory.txt")}
+        keyframes = [row[0] for row in poses(self.out / "keyframes.txt")]
+        self.assertGreater(len(keyframes), 1)
+        self.assertLessEqual(set(keyframes), stamps)
+
+    def test_summary(self):
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertEqual(summary["frames"], FRAMES)
+        self.assertEqual(summary["tracked"], FRAMES)
+        self.assertEqual(summary["lost_intervals"], [])
+        self.assertEqual(summary["keyframes"], len(poses(self.out / "keyframes.txt")))
+        self.assertGreater(summary["points"], 100)
+        self.assertGreater(summary["peak_memory_mib"], 1)
+        self.assertGreater(summary["startup_ms"], 0)
+        frame = summary["stages_ms"]["frame"]
+        self.assertTrue(0 < frame["median"] <= frame["p95"] <= frame["max"])
+        self.assertIn("tracking", summary["configuration"])
+
+    def test_map_is_a_point_cloud(self):
+        header, body = (self.out / "map.ply").read_bytes().split(b"end_header\n", 1)
+        self.assertTrue(header.startswith(b"ply\n"))
+        self.assertGreater(int(re.search(rb"element vertex (\d+)", header).group(1)), 100)
+        self.assertTrue(body)
+
+    def test_picture(self):
+        self.assertIn("<svg", (self.out / "trajectory.svg").read_text())
+
+    def evaluate(self, measure, *options):
+        file = self.folder / f"{measure}.json"
+        done = dxslam("eval", measure, self.recording / "groundtruth.txt",
+                      self.out / "trajectory.txt", "--json", file, *options)
+        self.succeed(done)
+        return json.loads(file.read_text())
+
+    def test_is_accurate(self):
+        self.assertLess(self.evaluate("ate")["rmse"], 0.03)
+        self.assertLess(self.evaluate("ate", "--align", "sim3")["rmse"], 0.03)
+        self.evaluate("rpe")
+
+    def test_low_light_and_stride(self):
+        out = self.folder / "dark"
+        self.succeed(self.run_orb(out, "--low-light=0.5", "--stride", 2, "--max-frames", 10))
+        self.assertEqual(json.loads((out / "summary.json").read_text())["frames"], 10)
+
+
+class Determinism(Recorded):
+    def test_runs_are_equal_to_the_byte(self):
+        for name in ("one", "two"):
+            self.succeed(self.run_orb(self.folder / name, "--deterministic"))
+        for file in ("trajectory.txt", "keyframes.txt", "map.ply"):
+            self.assertEqual((self.folder / "one" / file).read_bytes(),
+                             (self.folder / "two" / file).read_bytes(), file)
+
+    def test_threads_change_little(self):
+        self.succeed(self.run_orb(self.folder / "serial", "--deterministic"))
+        self.succeed(self.run_orb(self.folder / "threaded"))
+        serial = poses(self.folder / "serial" / "trajectory.txt")
+        threaded = poses(self.folder / "threaded" / "trajectory.txt")
+        self.assertEqual([row[0] for row in serial], [row[0] for row in threaded])
+        self.assertLess(max(math.dist(a[1:4], b[1:4]) for a, b in zip(serial, threaded)), 0.03)
+
+    def test_recordings_are_equal_to_the_byte(self):
+        again = self.folder / "again"
+        self.succeed(dxslam("synth", again, "--frames", FRAMES, "--seed", 7))
+        for file in sorted(self.recording.rglob("*.*")):
+            self.assertEqual(file.read_bytes(),
+                             (again / file.relative_to(self.recording)).read_bytes(), file)
+
+
+class Interruption(Recorded):
+    def start(self, out):
+        """A run at the camera's own pace that has begun to track when this returns."""
+        process = subprocess.Popen(
+            [PROGRAM, "run", self.recording, "--features", "orb", "--out", out, "--realtime"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not (out.is_dir() and any(out.iterdir())) and process.poll() is None:
+            self.assertLess(time.monotonic(), deadline, "no output appeared")
+            time.sleep(0.02)
+        time.sleep(0.5)
+        return process
+
+    def test_interrupt_saves_what_was_made(self):
+        out = self.folder / "interrupted"
+        process = self.start(out)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(TIMEOUT), INTERRUPTED)
+        self.assertGreater(len(poses(out / "trajectory.txt")), 0)
+        self.assertLess(len(poses(out / "trajectory.txt")), FRAMES)
+        self.assertTrue(json.loads((out / "summary.json").read_text())["interrupted"])
+
+    def test_kill_leaves_whole_lines(self):
+        out = self.folder / "killed"
+        process = self.start(out)
+        process.kill()
+        process.wait(TIMEOUT)
+        for file in out.glob("*.txt"):
+            for row in poses(file)[:-1]:
+                self.assertEqual(len(row), 8)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main(verbosity=2))
