@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "features/extractor_factory.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/error.h"
+#include "features/brief_extractor.h"
+#include "features/data_directory.h"
+#include "features/model_manifest.h"
+#include "features/network_extractor.h"
+#include "features/orb_extractor.h"
+
+namespace dxslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kShipped = "hfnet";
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// The manifest that a name stands for; empty where there is none.
+std::string find_manifest(const std::string& name) {
+  if (ends_with(name, ".yaml")) return name;
+  const fs::path data = data_directory();
+  const fs::path shipped = data / "models" / name / "manifest.yaml";
+  if (fs::exists(shipped)) return shipped.string();
+  const fs::path described = data / "manifests" / (name + ".yaml");
+  return fs::exists(described) ? described.string() : std::string();
+}
+
+std::unique_ptr<FeatureExtractor> make_plain(const std::string& name,
+                                             const ExtractorOptions& options) {
+  if (name == "orb") return make_orb_extractor(options);
+  if (name == "opencv_orb") return make_opencv_orb_extractor(options);
+  const std::string manifest = find_manifest(name);
+  if (manifest.empty()) {
+    throw InputError(
+        fmt::format("unknown features `{}`, expected a manifest (*.yaml) or one of: "
+                    "{}; each also with +brief or +rbrief",
+                    name, fmt::join(known_extractors(), ", ")));
+  }
+  return make_network_extractor(read_model_manifest(manifest), options);
+}
+
+bool files_exist(const ModelVariants& variants) {
+  return fs::exists(variants.floating.path) &&
+         (!variants.int8.given() || fs::exists(variants.int8.path));
+}
+
+bool is_available(const std::string& name) {
+  const std::string path = find_manifest(name);
+  if (path.empty()) return true;
+  const ModelManifest manifest = read_model_manifest(path);
+  return files_exist(manifest.files) &&
+         (!manifest.global_head || files_exist(manifest.global_head->files));
+}
+
+}  // namespace
+
+std::unique_ptr<FeatureExtractor> make_extractor(const std::string& name_or_manifest,
+                                                 const ExtractorOptions& options) {
+  validate_options("features", options);
+  for (const bool oriented : {false, true}) {
+    const std::string suffix = oriented ? "+rbrief" : "+brief";
+    if (!ends_with(name_or_manifest, suffix)) continue;
+    const auto detector = name_or_manifest.substr(0, name_or_manifest.size() - suffix.size());
+    return make_brief_extractor(make_plain(detector, options), oriented);
+  }
+  return make_plain(name_or_manifest, options);
+}
+
+std::string default_extractor() { return find_manifest(kShipped).empty() ? "orb" : kShipped; }
+
+std::vector<std::string> known_extractors() {
+  std::vector<std::string> models;
+  std::error_code error;
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(data_directory()) / "manifests", error)) {
+    if (entry.path().extension() == ".yaml") models.push_back(entry.path().stem().string());
+  }
+  for (const auto& entry : fs::directory_iterator(fs::path(data_directory()) / "models", error)) {
+    if (fs::exists(entry.path() / "manifest.yaml")) {
+      models.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(models.begin(), models.end());
+  models.erase(std::unique(models.begin(), models.end()), models.end());
+  std::vector<std::string> names{"orb", "opencv_orb"};
+  names.insert(names.end(), models.begin(), models.end());
+  return names;
+}
+
+std::vector<std::string> available_extractors() {
+  std::vector<std::string> names = known_extractors();
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [](const std::string& name) { return !is_available(name); }),
+              names.end());
+  return names;
+}
+
+}  // namespace dxslam

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "features/network_extractor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/error.h"
+#include "features/cell_scores.h"
+#include "features/dense_scores.h"
+#include "features/descriptor_detection.h"
+#include "features/descriptor_sampling.h"
+#include "features/keypoint_selection.h"
+#include "features/network_input.h"
+#include "features/non_maximum_suppression.h"
+#include "features/openvino_engine.h"
+#include "features/stage_timer.h"
+#include "features/subpixel.h"
+
+namespace dxslam {
+namespace {
+
+DetectorOptions detector_options(const ModelManifest& manifest, const ExtractorOptions& options) {
+  DetectorOptions detector = manifest.detector;
+  if (options.max_keypoints > 0) detector.max_keypoints = options.max_keypoints;
+  if (options.score_threshold >= 0.0) detector.score_threshold = options.score_threshold;
+  if (options.nms_radius >= 0) detector.nms_radius = options.nms_radius;
+  if (options.nms_iterations >= 0) detector.nms_iterations = options.nms_iterations;
+  if (options.spread >= 0.0) detector.spread = options.spread;
+  return detector;
+}
+
+float logit(double probability) {
+  const double p = std::clamp(probability, 1e-12, 1.0 - 1e-12);
+  return static_cast<float>(std::log(p / (1.0 - p)));
+}
+
+float sigmoid(float x) { return 1.0F / (1.0F + std::exp(-x)); }
+
+void normalize(std::vector<float>& vector) {
+  double sum = 0.0;
+  for (const float v : vector) sum += static_cast<double>(v) * v;
+  const double scale = sum > 0.0 ? 1.0 / std::sqrt(sum) : 0.0;
+  for (float& v : vector) v = static_cast<float>(v * scale);
+}
+
+class NetworkExtractor final : public FeatureExtractor {
+ public:
+  NetworkExtractor(const ModelManifest& manifest, const ExtractorOptions& options)
+      : manifest_(manifest),
+        detector_(detector_options(manifest, options)),
+        input_(manifest.input),
+        engine_(manifest, options),
+        cells_(manifest.cell_size) {
+    traits_.dimension = manifest.descriptor.dimension;
+    traits_.max_distance = static_cast<float>(manifest.descriptor.max_distance);
+    traits_.global_dimension = manifest.global_dimension;
+  }
+
+  const std::string& name() const override { return manifest_.name; }
+  const DescriptorTraits& traits() const override { return traits_; }
+  std::string precision() const override { return engine_.precision(); }
+  std::vector<StageTime> last_stages() const override { return timer_.stages(); }
+
+  Features extract(const cv::Mat& image, bool with_global) override {
+    timer_.start();
+    const cv::Mat& prepared = input_.prepare(image);
+    timer_.stop("preprocess");
+    engine_.run(prepared, with_global && traits_.global_dimension > 0);
+    timer_.stop("network");
+    find_candidates(prepared.size());
+    select(prepared.size());
+    timer_.stop("detect");
+    Features features = describe();
+    timer_.stop("describe");
+    return features;
+  }
+
+ private:
+  /// Fills candidates_ with scores in the detector's own units.
+  void find_candidates(const cv::Size& size) {
+    candidates_.clear();
+    const PixelArea area = input_.area(detector_.border);
+    if (manifest_.keypoint_logits) {
+      cells_.find(engine_.output(OutputRole::kKeypointLogits),
+                  std::max(detector_.score_threshold, 1e-9), area, candidates_);
+    } else if (manifest_.scores) {
+      const double threshold = detector_.score_threshold;
+      const bool maxima_only = detector_.nms_radius > 0 && detector_.nms_iterations == 0;
+      dxslam::find_candidates(engine_.output(OutputRole::kScores),
+                              detector_.sigmoid ? logit(threshold) : static_cast<float>(threshold),
+                              area, maxima_only, candidates_);
+    } else {
+      find_descriptor_maxima(engine_.output(OutputRole::kDescriptors), manifest_.descriptor.stride,
+                             detector_.score_threshold, area, candidates_);
+    }
+    suppression_.run(size.width, size.height, detector_.nms_radius, detector_.nms_iterations,
+                     candidates_);
+  }
+
+  /// Keeps the best; from here on scores are those that keypoints carry.
+  void select(const cv::Size& size) {
+    if (manifest_.reliability) weigh_by_reliability();
+    select_keypoints(size.width, size.height, detector_.max_keypoints, detector_.spread,
+                     detector_.spread_cell, candidates_);
+  }
+
+  void weigh_by_reliability() {
+    const TensorView map = engine_.output(OutputRole::kReliability);
+    const SamplingGrid grid = sampling_grid();
+    for (Candidate& c : candidates_) {
+      const cv::Point2f position(static_cast<float>(c.x), static_cast<float>(c.y));
+      const float reliability = std::max(sample_value(map, grid, position), 1e-12F);
+      if (manifest_.keypoint_logits) {
+        c.score += std::log(reliability);
+      } else {
+        c.score *= reliability;
+      }
+    }
+  }
+
+  SamplingGrid sampling_grid() const {
+    return {manifest_.descriptor.stride, manifest_.descriptor.align_corners};
+  }
+
+  float final_score(float score) const {
+    if (manifest_.keypoint_logits) return std::exp(score);
+    return detector_.sigmoid ? sigmoid(score) : score;
+  }
+
+  std::vector<cv::Point2f> positions() const {
+    std::vector<cv::Point2f> result;
+    result.reserve(candidates_.size());
+    const bool cells = manifest_.keypoint_logits.has_value();
+    const bool dense = manifest_.scores.has_value();
+    const TensorView map = dense ? engine_.output(OutputRole::kScores) : TensorView{};
+    for (const Candidate& c : candidates_) {
+      cv::Point2f offset(0.0F, 0.0F);
+      if (detector_.subpixel && cells) {
+        offset = peak_offset([&](int x, int y) { return cells_.log_score(x, y); }, c.x, c.y);
+      } else if (detector_.subpixel && dense) {
+        offset = detector_.sigmoid
+                     ? peak_offset([&](int x, int y) { return *map.at(y, x); }, c.x, c.y)
+                     : peak_offset([&](int x, int y) { return log_of(*map.at(y, x)); }, c.x, c.y);
+      }
+      result.emplace_back(static_cast<float>(c.x) + offset.x, static_cast<float>(c.y) + offset.y);
+    }
+    return result;
+  }
+
+  static float log_of(float probability) { return std::log(std::max(probability, 1e-12F)); }
+
+  Features describe() {
+    Features features;
+    const std::vector<cv::Point2f> places = positions();
+    features.descriptors =
+        sample_descriptors(engine_.output(OutputRole::kDescriptors), sampling_grid(), places);
+    features.keypoints.reserve(candidates_.size());
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const cv::Point2f p = input_.to_image(places[i]);
+      features.keypoints.push_back({p.x, p.y, final_score(candidates_[i].score), input_.sigma()});
+    }
+    features.global = engine_.global();
+    normalize(features.global);
+    return features;
+  }
+
+  ModelManifest manifest_;
+  DetectorOptions detector_;
+  DescriptorTraits traits_;
+  NetworkInput input_;
+  OpenVinoEngine engine_;
+  CellScores cells_;
+  NonMaximumSuppression suppression_;
+  std::vector<Candidate> candidates_;
+  StageTimer timer_;
+};
+
+}  // namespace
+
+std::unique_ptr<FeatureExtractor> make_network_extractor(const ModelManifest& manifest,
+                                                         const ExtractorOptions& options) {
+  return std::make_unique<NetworkExtractor>(manifest, options);
+}
+
+}  // namespace dxslam

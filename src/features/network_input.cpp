@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "features/network_input.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "features/grey_image.h"
+
+namespace dxslam {
+namespace {
+
+int round_up(int size, int multiple) { return (size + multiple - 1) / multiple * multiple; }
+
+}  // namespace
+
+void NetworkInput::set_channels(const cv::Mat& image) {
+  if (image.channels() == description_.channels) {
+    channels_ = image;
+  } else {
+    cv::Mat converted;
+    cv::cvtColor(image, converted,
+                 description_.channels == 1 ? cv::COLOR_BGR2GRAY : cv::COLOR_GRAY2BGR);
+    channels_ = converted;
+  }
+}
+
+const cv::Mat& NetworkInput::prepare(const cv::Mat& image) {
+  check_image(image);
+  set_channels(image);
+  content_ = image.size();
+  if (description_.fixed_width > 0) {
+    content_ = {description_.fixed_width, description_.fixed_height};
+    scale_x_ = static_cast<float>(image.cols) / static_cast<float>(content_.width);
+    scale_y_ = static_cast<float>(image.rows) / static_cast<float>(content_.height);
+  }
+  const cv::Size padded = description_.fixed_width > 0
+                              ? content_
+                              : cv::Size(round_up(content_.width, description_.size_multiple),
+                                         round_up(content_.height, description_.size_multiple));
+  if (channels_.size() != content_) {
+    cv::resize(channels_, sized_, content_, 0, 0, cv::INTER_LINEAR);
+    prepared_ = sized_;
+  } else if (padded != content_) {
+    cv::copyMakeBorder(channels_, sized_, 0, padded.height - content_.height, 0,
+                       padded.width - content_.width, cv::BORDER_REPLICATE);
+    prepared_ = sized_;
+  } else {
+    prepared_ = channels_.isContinuous() ? channels_ : channels_.clone();
+  }
+  return prepared_;
+}
+
+PixelArea NetworkInput::area(int border) const {
+  const int margin = std::max(border, 1);
+  return {margin, margin, content_.width - margin, content_.height - margin};
+}
+
+cv::Point2f NetworkInput::to_image(const cv::Point2f& position) const {
+  return {(position.x + 0.5F) * scale_x_ - 0.5F, (position.y + 0.5F) * scale_y_ - 0.5F};
+}
+
+float NetworkInput::sigma() const { return std::max(1.0F, std::max(scale_x_, scale_y_)); }
+
+}  // namespace dxslam

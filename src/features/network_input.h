@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "features/candidate.h"
+#include "features/model_manifest.h"
+
+namespace dxslam {
+
+/// Brings camera images to what a network takes - number of channels; size padded at the bottom
+/// and on the right by repeating the rim, or scaled where the network has one size - and positions
+/// back to the image. Copies nothing where the image already fits. One thread at a time.
+class NetworkInput {
+ public:
+  explicit NetworkInput(const InputDescription& description) : description_(description) {}
+
+  /// `image` is CV_8UC1 or CV_8UC3 (BGR). The result is valid until the next call and while
+  /// `image` is. Throws InputError for an image of another type, or too small to hold a keypoint.
+  const cv::Mat& prepare(const cv::Mat& image);
+
+  /// Pixels of the prepared image that are not padding and lie at least `border` (and one pixel)
+  /// inside.
+  PixelArea area(int border) const;
+  /// Position in the prepared image to position in the image.
+  cv::Point2f to_image(const cv::Point2f& position) const;
+  /// Pixels of the image per pixel of the prepared image; 1 unless scaled down.
+  float sigma() const;
+
+ private:
+  void set_channels(const cv::Mat& image);
+
+  InputDescription description_;
+  cv::Size content_;  // of the image within the prepared image
+  float scale_x_ = 1.0F;
+  float scale_y_ = 1.0F;
+  cv::Mat channels_;
+  cv::Mat sized_;
+  cv::Mat prepared_;
+};
+
+}  // namespace dxslam

@@ -1,0 +1,544 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "features/openvino_engine.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <openvino/frontend/manager.hpp>
+#include <openvino/op/constant.hpp>
+#include <openvino/op/mvn.hpp>
+#include <openvino/openvino.hpp>
+#include <optional>
+#include <sstream>
+
+#include "core/error.h"
+#include "features/data_directory.h"
+
+namespace dxslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One OpenVINO runtime for the whole program, alive as long as an engine uses it.
+std::shared_ptr<ov::Core> shared_core() {
+  static std::mutex mutex;
+  static std::weak_ptr<ov::Core> weak;
+  const std::lock_guard<std::mutex> lock(mutex);
+  auto core = weak.lock();
+  if (!core) {
+    core = std::make_shared<ov::Core>();
+    weak = core;
+  }
+  return core;
+}
+
+/// The last line of an exception of OpenVINO, which are long and name its source files.
+std::string short_reason(const std::exception& error) {
+  std::istringstream lines(error.what());
+  std::string last;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  }
+  return last;
+}
+
+std::string text(const ov::PartialShape& shape) { return shape.to_string(); }
+
+/// An output as the manifest describes it. `stride` 0 is a vector without places.
+struct OutputSpec {
+  std::string key;  // in the manifest
+  std::string name;
+  TensorLayout layout = TensorLayout::kNchw;
+  int channels = 0;
+  int stride = 0;
+
+  ov::Shape expected_shape(int height, int width) const {
+    const auto c = static_cast<std::size_t>(channels);
+    const auto h = static_cast<std::size_t>(height / stride);
+    const auto w = static_cast<std::size_t>(width / stride);
+    return layout == TensorLayout::kNchw ? ov::Shape{1, c, h, w} : ov::Shape{1, h, w, c};
+  }
+};
+
+bool same_name(const std::string& wanted, const std::string& found) {
+  return found == wanted || found == wanted + ":0";
+}
+
+template <class Port>
+bool has_name(const Port& port, const std::string& wanted) {
+  const auto& names = port.get_names();
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return same_name(wanted, name); }) ||
+         same_name(wanted, port.get_node()->get_friendly_name());
+}
+
+template <class Ports>
+std::string list_names(const Ports& ports) {
+  std::vector<std::string> names;
+  for (const auto& port : ports) {
+    names.push_back(port.get_names().empty() ? port.get_node()->get_friendly_name()
+                                             : *port.get_names().begin());
+  }
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_tensorflow(const std::string& path) {
+  return fs::is_directory(path) || fs::path(path).extension() == ".pb";
+}
+
+/// TensorFlow graphs are cut before conversion, as some operations behind the cut (the resampler
+/// of the published HF-Net) cannot be converted.
+std::shared_ptr<ov::Model> read_tensorflow(const std::string& path,
+                                           const std::vector<std::string>& outputs) {
+  ov::frontend::FrontEndManager manager;
+  const auto front_end = manager.load_by_framework("tf");
+  const auto graph = front_end->load(path);
+  std::vector<ov::frontend::Place::Ptr> places;
+  for (const std::string& name : outputs) {
+    auto place = graph->get_place_by_tensor_name(name);
+    if (!place) place = graph->get_place_by_tensor_name(name + ":0");
+    if (!place) place = graph->get_place_by_operation_name(name);
+    if (!place) {
+      throw InputError(
+          fmt::format("{}: found no tensor named {}, expected it as an output of the "
+                      "TensorFlow graph",
+                      path, name));
+    }
+    places.push_back(place);
+  }
+  graph->override_all_outputs(places);
+  return front_end->convert(graph);
+}
+
+std::shared_ptr<ov::Model> read_model(ov::Core& core, const ModelFile& file,
+                                      const std::vector<std::string>& outputs) {
+  verify_model_file(file);
+  try {
+    return is_tensorflow(file.path) ? read_tensorflow(file.path, outputs)
+                                    : core.read_model(file.path);
+  } catch (const ov::Exception& e) {
+    throw InputError(
+        fmt::format("{}: cannot be read as a model, it is damaged or of a kind that "
+                    "OpenVINO does not know: {}",
+                    file.path, short_reason(e)));
+  }
+}
+
+/// The tensor called `name` anywhere in the model: an output, or an inner one to cut at.
+ov::Output<ov::Node> find_tensor(const ov::Model& model, const std::string& name,
+                                 const std::string& key, const std::string& path) {
+  for (const auto& result : model.outputs()) {
+    if (has_name(result, name)) return result.get_node()->input_value(0);
+  }
+  for (const auto& node : model.get_ordered_ops()) {
+    for (const auto& port : node->outputs()) {
+      if (has_name(port, name)) return port;
+    }
+  }
+  throw InputError(fmt::format("{}: found outputs {}, expected {} for `{}`", path,
+                               list_names(model.outputs()), name, key));
+}
+
+/// The model that computes just these outputs, in this order. It shares nodes with `model`.
+std::shared_ptr<ov::Model> keep_outputs(const ov::Model& model,
+                                        const std::vector<OutputSpec>& specs,
+                                        const std::string& path) {
+  ov::OutputVector outputs;
+  for (const OutputSpec& spec : specs) {
+    outputs.push_back(find_tensor(model, spec.name, spec.key, path));
+  }
+  return std::make_shared<ov::Model>(outputs, model.get_friendly_name())->clone();
+}
+
+void check_input(const ov::Model& model, const InputDescription& input, const std::string& path) {
+  if (model.inputs().size() != 1 || !has_name(model.input(0), input.name)) {
+    throw InputError(fmt::format("{}: found inputs {}, expected one called {}", path,
+                                 list_names(model.inputs()), input.name));
+  }
+  const ov::PartialShape shape = model.input(0).get_partial_shape();
+  const auto rank = shape.rank();
+  const std::size_t channel = input.layout == TensorLayout::kNchw ? 1 : 3;
+  if (rank.is_static() && rank.get_length() == 4 && shape[0].compatible(1) &&
+      shape[channel].compatible(input.channels)) {
+    return;
+  }
+  throw InputError(
+      fmt::format("{}: input {} has shape {}, expected {}", path, input.name, text(shape),
+                  input.layout == TensorLayout::kNchw ? fmt::format("[1,{},H,W]", input.channels)
+                                                      : fmt::format("[1,H,W,{}]", input.channels)));
+}
+
+ov::Shape input_shape(const InputDescription& input, int height, int width) {
+  const auto c = static_cast<std::size_t>(input.channels);
+  const auto h = static_cast<std::size_t>(height);
+  const auto w = static_cast<std::size_t>(width);
+  return input.layout == TensorLayout::kNchw ? ov::Shape{1, c, h, w} : ov::Shape{1, h, w, c};
+}
+
+/// Score maps and other one-channel outputs may come without their channel axis.
+bool shape_fits(const ov::Shape& found, const OutputSpec& spec, int height, int width) {
+  if (spec.stride == 0) return ov::shape_size(found) == static_cast<std::size_t>(spec.channels);
+  const ov::Shape expected = spec.expected_shape(height, width);
+  if (found == expected) return true;
+  return spec.channels == 1 && found.size() == 3 && found[0] == 1 &&
+         ov::shape_size(found) == ov::shape_size(expected) &&
+         found[1] == static_cast<std::size_t>(height / spec.stride);
+}
+
+void check_output(const ov::Output<const ov::Node>& port, const OutputSpec& spec, int height,
+                  int width, const std::string& path) {
+  const ov::PartialShape& shape = port.get_partial_shape();
+  if (shape.is_static() && shape_fits(shape.to_shape(), spec, height, width)) return;
+  throw InputError(
+      fmt::format("{}: output {} has shape {} for an input of {} x {} pixels, expected {}", path,
+                  spec.name, text(shape), width, height,
+                  spec.stride == 0 ? fmt::format("{} values", spec.channels)
+                                   : text(ov::PartialShape(spec.expected_shape(height, width)))));
+}
+
+/// Maps that are read position by position leave the network with their channels side by side;
+/// full-resolution ones stay as they are, being larger than what is read of them.
+bool wants_nhwc(const OutputSpec& spec) {
+  return spec.layout == TensorLayout::kNchw && spec.stride >= 4 && spec.channels > 1;
+}
+
+std::vector<float> in_pixel_units(const std::vector<double>& values, double scale) {
+  std::vector<float> result;
+  for (const double value : values) result.push_back(static_cast<float>(value / scale));
+  return result;
+}
+
+void add_preprocessing(ov::preprocess::PrePostProcessor& steps, const InputDescription& input) {
+  auto& port = steps.input(0);
+  port.tensor().set_element_type(ov::element::u8).set_layout("NHWC");
+  port.model().set_layout(input.layout == TensorLayout::kNchw ? "NCHW" : "NHWC");
+  auto& chain = port.preprocess();
+  if (input.channels == 3) {
+    port.tensor().set_color_format(ov::preprocess::ColorFormat::BGR);
+    if (!input.bgr) chain.convert_color(ov::preprocess::ColorFormat::RGB);
+  }
+  chain.convert_element_type(ov::element::f32);
+  if (!input.mean.empty()) chain.mean(in_pixel_units(input.mean, input.scale));
+  if (!input.deviation.empty()) {
+    chain.scale(in_pixel_units(input.deviation, input.scale));
+  } else if (input.scale != 1.0) {
+    chain.scale(static_cast<float>(1.0 / input.scale));
+  }
+  if (input.instance_normalized) {
+    chain.custom([](const ov::Output<ov::Node>& image) {
+      const auto axes = ov::op::v0::Constant::create(ov::element::i64, ov::Shape{3}, {1, 2, 3});
+      return std::make_shared<ov::op::v6::MVN>(image, axes, true, 1e-5F,
+                                               ov::op::MVNEpsMode::INSIDE_SQRT)
+          ->output(0);
+    });
+  }
+}
+
+void add_postprocessing(ov::preprocess::PrePostProcessor& steps,
+                        const std::vector<OutputSpec>& specs) {
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    auto& port = steps.output(i);
+    port.tensor().set_element_type(ov::element::f32);
+    if (!wants_nhwc(specs[i])) continue;
+    port.model().set_layout("NCHW");
+    port.tensor().set_layout("NHWC");
+  }
+}
+
+std::vector<OutputSpec> local_outputs(const ModelManifest& manifest) {
+  std::vector<OutputSpec> specs;
+  if (manifest.keypoint_logits) {
+    specs.push_back({"outputs.keypoint_logits", manifest.keypoint_logits->name,
+                     manifest.keypoint_logits->layout, manifest.cell_size * manifest.cell_size + 1,
+                     manifest.cell_size});
+  }
+  if (manifest.scores) {
+    specs.push_back({"outputs.scores", manifest.scores->name, manifest.scores->layout, 1, 1});
+  }
+  specs.push_back({"outputs.descriptors", manifest.descriptors.name, manifest.descriptors.layout,
+                   manifest.descriptor.dimension, manifest.descriptor.stride});
+  if (manifest.reliability) {
+    specs.push_back({"outputs.reliability", manifest.reliability->name,
+                     manifest.reliability->layout, 1, manifest.descriptor.stride});
+  }
+  return specs;
+}
+
+const char* key_of(OutputRole role) {
+  switch (role) {
+    case OutputRole::kKeypointLogits:
+      return "outputs.keypoint_logits";
+    case OutputRole::kScores:
+      return "outputs.scores";
+    case OutputRole::kDescriptors:
+      return "outputs.descriptors";
+    case OutputRole::kReliability:
+      return "outputs.reliability";
+  }
+  return "";
+}
+
+/// Which variant runs, and what arithmetic the float layers use.
+struct Precision {
+  bool int8 = false;
+  bool bf16_allowed = false;
+  std::string name;
+};
+
+Precision choose_precision(const ModelManifest& manifest, const ExtractorOptions& options) {
+  const std::string& wanted = options.precision;
+  if (wanted != "auto" && wanted != "f32" && wanted != "bf16" && wanted != "int8") {
+    throw InputError(
+        fmt::format("option precision is `{}`, expected auto, f32, bf16 or int8", wanted));
+  }
+  if (wanted == "int8" && !manifest.has_int8()) {
+    throw InputError(fmt::format("{}: has no INT8 model, expected files.int8 for precision int8",
+                                 manifest.path));
+  }
+  if (wanted == "int8" || (wanted == "auto" && manifest.has_int8() && !options.deterministic)) {
+    return {true, false, "int8"};
+  }
+  if (wanted == "f32" || options.deterministic) return {false, false, "f32"};
+  const auto capabilities = shared_core()->get_property("CPU", ov::device::capabilities);
+  const bool bf16 = std::find(capabilities.begin(), capabilities.end(),
+                              ov::device::capability::BF16) != capabilities.end();
+  return {false, bf16, bf16 ? "bf16" : "f32"};
+}
+
+}  // namespace
+
+class OpenVinoEngine::Impl {
+ public:
+  Impl(const ModelManifest& manifest, const ExtractorOptions& options)
+      : manifest_(manifest),
+        options_(options),
+        core_(shared_core()),
+        precision_(choose_precision(manifest, options)) {
+    local_specs_ = local_outputs(manifest_);
+    local_count_ = local_specs_.size();
+    const ModelFile& file = pick(manifest_.files);
+    path_ = file.path;
+    const auto model = load(file);
+    local_ = keep_outputs(*model, with_features(), path_);
+    check_input(*local_, manifest_.input, path_);
+    if (manifest_.global) {
+      full_ = keep_outputs(*model, with_global(), path_);
+      check_input(*full_, manifest_.input, path_);
+    }
+    if (manifest_.global_head) {
+      const ModelFile& head_file = pick(manifest_.global_head->files);
+      head_path_ = head_file.path;
+      const auto head = read_model(*core_, head_file, {manifest_.global_head->output});
+      head_ = keep_outputs(*head, {head_spec()}, head_path_);
+      check_head_input();
+    }
+    if (manifest_.input.fixed_width > 0) {
+      prepare(manifest_.input.fixed_width, manifest_.input.fixed_height);
+    }
+  }
+
+  void run(const cv::Mat& image, bool with_global) {
+    require(image.isContinuous() && image.depth() == CV_8U &&
+                image.channels() == manifest_.input.channels,
+            "OpenVinoEngine::run wants a continuous 8-bit image of the network's channels");
+    Compiled& compiled = prepare(image.cols, image.rows);
+    const bool full = with_global && full_;
+    if (full && !compiled.full) {
+      compiled.full = compile(*full_, this->with_global(), path_, image.rows, image.cols);
+    }
+    current_ = full ? &*compiled.full : &compiled.local;
+    const ov::Shape shape{1, static_cast<std::size_t>(image.rows),
+                          static_cast<std::size_t>(image.cols),
+                          static_cast<std::size_t>(image.channels())};
+    current_->set_input_tensor(ov::Tensor(ov::element::u8, shape, image.data));
+    infer(*current_, path_);
+    global_.clear();
+    if (with_global && head_) {
+      run_head(compiled);
+    } else if (full) {
+      copy_global(current_->get_output_tensor(local_count_));
+    }
+  }
+
+  TensorView output(OutputRole role) const {
+    require(current_ != nullptr, "OpenVinoEngine::output is called before run");
+    for (std::size_t i = 0; i < local_count_; ++i) {
+      const OutputSpec& spec = local_specs_[i];
+      if (spec.key != key_of(role)) continue;
+      const ov::Tensor tensor = current_->get_output_tensor(i);
+      const ov::Shape input = current_->get_input_tensor().get_shape();
+      const int height = static_cast<int>(input[1]) / spec.stride;
+      const int width = static_cast<int>(input[2]) / spec.stride;
+      const float* data = tensor.data<const float>();
+      const bool nchw = spec.layout == TensorLayout::kNchw && !wants_nhwc(spec);
+      return nchw ? TensorView::nchw(data, spec.channels, height, width)
+                  : TensorView::nhwc(data, spec.channels, height, width);
+    }
+    throw ContractError(fmt::format("the model has no {}", key_of(role)));
+  }
+
+  std::vector<float> global() const { return global_; }
+  const std::string& precision() const { return precision_.name; }
+
+ private:
+  struct Compiled {
+    ov::InferRequest local;
+    std::optional<ov::InferRequest> full;
+    std::optional<ov::InferRequest> head;
+  };
+
+  const ModelFile& pick(const ModelVariants& variants) const {
+    return precision_.int8 && variants.int8.given() ? variants.int8 : variants.floating;
+  }
+
+  std::shared_ptr<ov::Model> load(const ModelFile& file) const {
+    std::vector<std::string> names;
+    for (const OutputSpec& spec : with_features()) names.push_back(spec.name);
+    if (manifest_.global) names.push_back(manifest_.global->name);
+    return read_model(*core_, file, names);
+  }
+
+  /// The local outputs and, for a separate global head, what that reads.
+  std::vector<OutputSpec> with_features() const {
+    auto specs = local_specs_;
+    if (manifest_.global_head) {
+      specs.push_back({"outputs.features", manifest_.features->name, TensorLayout::kNchw, 0, 0});
+    }
+    return specs;
+  }
+
+  std::vector<OutputSpec> with_global() const {
+    auto specs = local_specs_;
+    specs.push_back({"outputs.global", manifest_.global->name, TensorLayout::kNchw,
+                     manifest_.global_dimension, 0});
+    return specs;
+  }
+
+  OutputSpec head_spec() const {
+    return {"global_head.output", manifest_.global_head->output, TensorLayout::kNchw,
+            manifest_.global_dimension, 0};
+  }
+
+  void check_head_input() const {
+    if (head_->inputs().size() == 1 && has_name(head_->input(0), manifest_.global_head->input)) {
+      return;
+    }
+    throw InputError(fmt::format("{}: found inputs {}, expected one called {}", head_path_,
+                                 list_names(head_->inputs()), manifest_.global_head->input));
+  }
+
+  Compiled& prepare(int width, int height) {
+    const auto key = std::make_pair(width, height);
+    const auto found = compiled_.find(key);
+    if (found != compiled_.end()) return found->second;
+    Compiled compiled;
+    compiled.local = compile(*local_, with_features(), path_, height, width);
+    return compiled_.emplace(key, std::move(compiled)).first->second;
+  }
+
+  ov::InferRequest compile(const ov::Model& model, const std::vector<OutputSpec>& specs,
+                           const std::string& path, int height, int width) const {
+    auto sized = model.clone();
+    try {
+      sized->reshape(ov::PartialShape(input_shape(manifest_.input, height, width)));
+    } catch (const ov::Exception& e) {
+      throw InputError(fmt::format("{}: cannot be set to an input of {} x {} pixels: {}", path,
+                                   width, height, short_reason(e)));
+    }
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      const bool checked = specs[i].key != "outputs.features";
+      const auto& port = std::as_const(*sized).output(i);
+      if (checked) check_output(port, specs[i], height, width, path);
+    }
+    ov::preprocess::PrePostProcessor steps(sized);
+    add_preprocessing(steps, manifest_.input);
+    add_postprocessing(steps, specs);
+    return compile(steps.build(), path);
+  }
+
+  ov::InferRequest compile(const std::shared_ptr<ov::Model>& model, const std::string& path) const {
+    ov::AnyMap properties{ov::hint::performance_mode(ov::hint::PerformanceMode::LATENCY),
+                          ov::num_streams(1), ov::inference_num_threads(options_.threads)};
+    if (!precision_.bf16_allowed) {
+      properties.insert(ov::hint::inference_precision(ov::element::f32));
+    } else {
+      properties.insert(ov::hint::inference_precision(ov::element::bf16));
+    }
+    const std::string cache = options_.cache_dir == "auto" ? cache_directory() : options_.cache_dir;
+    if (!cache.empty()) properties.insert(ov::cache_dir(cache));
+    try {
+      return core_->compile_model(model, "CPU", properties).create_infer_request();
+    } catch (const ov::Exception& e) {
+      throw InputError(fmt::format("{}: cannot be compiled: {}", path, short_reason(e)));
+    }
+  }
+
+  static void infer(ov::InferRequest& request, const std::string& path) {
+    try {
+      request.infer();
+    } catch (const ov::Exception& e) {
+      throw InputError(fmt::format("{}: the network failed: {}", path, short_reason(e)));
+    }
+  }
+
+  void run_head(Compiled& compiled) {
+    const ov::Tensor features = compiled.local.get_output_tensor(local_count_);
+    if (!compiled.head) {
+      compiled.head = compile_head(features);
+      compiled.head->set_input_tensor(features);
+    }
+    infer(*compiled.head, head_path_);
+    copy_global(compiled.head->get_output_tensor(0));
+  }
+
+  ov::InferRequest compile_head(const ov::Tensor& features) const {
+    auto sized = head_->clone();
+    try {
+      sized->reshape(ov::PartialShape(features.get_shape()));
+    } catch (const ov::Exception& e) {
+      throw InputError(fmt::format("{}: input {} cannot take the features of shape {}: {}",
+                                   head_path_, manifest_.global_head->input,
+                                   text(ov::PartialShape(features.get_shape())), short_reason(e)));
+    }
+    check_output(std::as_const(*sized).output(0), head_spec(), 0, 0, head_path_);
+    ov::preprocess::PrePostProcessor steps(sized);
+    steps.input(0).tensor().set_element_type(ov::element::f32);
+    steps.output(0).tensor().set_element_type(ov::element::f32);
+    return compile(steps.build(), head_path_);
+  }
+
+  void copy_global(const ov::Tensor& tensor) {
+    const float* data = tensor.data<const float>();
+    global_.assign(data, data + tensor.get_size());
+  }
+
+  ModelManifest manifest_;
+  ExtractorOptions options_;
+  std::shared_ptr<ov::Core> core_;
+  Precision precision_;
+  std::vector<OutputSpec> local_specs_;
+  std::size_t local_count_ = 0;
+  std::string path_;
+  std::string head_path_;
+  std::shared_ptr<ov::Model> local_;
+  std::shared_ptr<ov::Model> full_;
+  std::shared_ptr<ov::Model> head_;
+  std::map<std::pair<int, int>, Compiled> compiled_;
+  ov::InferRequest* current_ = nullptr;
+  std::vector<float> global_;
+};
+
+OpenVinoEngine::OpenVinoEngine(const ModelManifest& manifest, const ExtractorOptions& options)
+    : impl_(std::make_unique<Impl>(manifest, options)) {}
+OpenVinoEngine::~OpenVinoEngine() = default;
+void OpenVinoEngine::run(const cv::Mat& image, bool with_global) { impl_->run(image, with_global); }
+TensorView OpenVinoEngine::output(OutputRole role) const { return impl_->output(role); }
+std::vector<float> OpenVinoEngine::global() const { return impl_->global(); }
+const std::string& OpenVinoEngine::precision() const { return impl_->precision(); }
+
+}  // namespace dxslam

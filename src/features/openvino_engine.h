@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "features/extractor_options.h"
+#include "features/model_manifest.h"
+#include "features/tensor_view.h"
+
+namespace dxslam {
+
+enum class OutputRole { kKeypointLogits, kScores, kDescriptors, kReliability };
+
+/// Runs the networks of one manifest by OpenVINO on the processor; the one file that knows
+/// OpenVINO. Models are OpenVINO IR, ONNX, or TensorFlow (frozen graph or saved model, cut at the
+/// outputs that the manifest names, so that what lies behind them need not be supported). They are
+/// compiled once a size with static shapes. One thread at a time.
+class OpenVinoEngine {
+ public:
+  /// Loads and checks the model files: existence, hash, names and shapes of input and outputs.
+  /// Throws InputError saying what was found and what was expected.
+  OpenVinoEngine(const ModelManifest& manifest, const ExtractorOptions& options);
+  ~OpenVinoEngine();
+
+  /// `image` is continuous CV_8U with the manifest's number of channels (BGR where three), of the
+  /// fixed size or multiples of size_multiple. The part that makes the global descriptor runs only
+  /// `with_global`. The first image of a size compiles the network for it.
+  void run(const cv::Mat& image, bool with_global);
+
+  /// Output of the last run(); valid until the next.
+  TensorView output(OutputRole role) const;
+  /// Raw global descriptor of the last run(with_global = true).
+  std::vector<float> global() const;
+
+  /// Precision that runs: "int8", "f32" or "bf16".
+  const std::string& precision() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dxslam
