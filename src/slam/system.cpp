@@ -67,19 +67,23 @@ void System::finish() {
   }
 }
 
-FramePtr System::extract(const RgbdImage& image) {
+System::Extracted System::extract(const RgbdImage& image) {
   const Stopwatch watch;
   const Features features = extractor_->extract(image.color, false);
-  times_.add("extract", watch.ms());
-  return make_frame(image, features, camera_);
+  FramePtr frame = make_frame(image, features, camera_);
+  const double ms = watch.ms();
+  times_.add("extract", ms);
+  return {std::move(frame), ms};
 }
 
-std::optional<KeyframeRequest> System::track(const FramePtr& frame) {
+std::optional<KeyframeRequest> System::track(const Extracted& extracted) {
   if (LocalMapPtr local_map = newest_local_map()) tracker_.set_local_map(std::move(local_map));
   const Stopwatch watch;
   std::optional<KeyframeRequest> request;
-  const TrackedFrame tracked = tracker_.track(frame, request);
-  times_.add("track", watch.ms());
+  const TrackedFrame tracked = tracker_.track(extracted.frame, request);
+  const double ms = watch.ms();
+  times_.add("track", ms);
+  times_.add("frame", extracted.ms + ms);
   frames_.push_back(tracked);
   if (on_frame_) on_frame_(tracked);
   return request;
@@ -122,9 +126,9 @@ void System::run_extraction() {
 }
 
 void System::run_tracking() {
-  while (std::optional<FramePtr> frame = extracted_.pop()) {
+  while (std::optional<Extracted> extracted = extracted_.pop()) {
     const bool first = !tracker_.has_local_map();
-    std::optional<KeyframeRequest> request = track(*frame);
+    std::optional<KeyframeRequest> request = track(*extracted);
     if (!request) continue;
     if (live_ && !first) {
       if (!requests_.try_push(std::move(*request))) ++totals_.dropped_requests;

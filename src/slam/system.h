@@ -70,8 +70,12 @@ class System {
   const FeatureExtractor& extractor() const { return *extractor_; }
 
  private:
-  FramePtr extract(const RgbdImage& image);
-  std::optional<KeyframeRequest> track(const FramePtr& frame);
+  struct Extracted {
+    FramePtr frame;
+    double ms = 0.0;  // what extraction took
+  };
+  Extracted extract(const RgbdImage& image);
+  std::optional<KeyframeRequest> track(const Extracted& extracted);
   void map_keyframe(const KeyframeRequest& request);
   void publish_local_map();
   LocalMapPtr newest_local_map();
@@ -94,7 +98,7 @@ class System {
   StageTimes times_;
 
   BoundedQueue<RgbdImage> images_;
-  BoundedQueue<FramePtr> extracted_;
+  BoundedQueue<Extracted> extracted_;
   BoundedQueue<KeyframeRequest> requests_;
   std::mutex local_map_mutex_;
   std::condition_variable local_map_changed_;

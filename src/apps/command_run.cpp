@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include "apps/commands.h"
+#include "apps/progress.h"
+#include "apps/run_output.h"
+#include "apps/run_settings.h"
+#include "core/options.h"
+#include "features/extractor_factory.h"
+#include "io/low_light.h"
+#include "io/options_yaml.h"
+#include "io/trajectory_file.h"
+#include "slam/system.h"
+
+namespace dxslam::apps {
+namespace {
+
+constexpr double kMinTrackedShare = 0.1;  // below it the run counts as failed
+
+std::atomic<bool> stop_requested{false};
+
+void request_stop(int) { stop_requested = true; }
+
+// The first SIGINT or SIGTERM ends the run in order, a second one at once.
+void catch_signals() {
+  struct sigaction action{};
+  action.sa_handler = request_stop;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+SystemOptions load_system_options(const RunSettings& settings) {
+  SystemOptions options;
+  if (!settings.config.empty()) options = load_options(settings.config, options);
+  if (!settings.features.empty()) options.features = settings.features;
+  options.deterministic = options.deterministic || settings.deterministic;
+  options.extractor.deterministic = options.extractor.deterministic || options.deterministic;
+  validate_options("", options);
+  return options;
+}
+
+const char* state_name(TrackingState state) {
+  switch (state) {
+    case TrackingState::kTracking:
+      return "tracking";
+    case TrackingState::kLost:
+      return "lost";
+    default:
+      return "starting";
+  }
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
+  }
+}
+
+// Waits until the recording's own clock has come to `stamp`.
+class RealTimePace {
+ public:
+  void wait_for(double stamp) {
+    if (first_stamp_ < 0.0) first_stamp_ = stamp;
+    std::this_thread::sleep_until(start_ + std::chrono::duration<double>(stamp - first_stamp_));
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double first_stamp_ = -1.0;
+};
+
+void feed(const RunSettings& settings, RgbdSequence& sequence, System& system, RunRecord& record) {
+  const std::optional<LowLight> low_light =
+      settings.low_light ? std::optional<LowLight>(LowLight(*settings.low_light)) : std::nullopt;
+  RealTimePace pace;
+  for (std::size_t i = 0; i < sequence.size(); i += settings.stride) {
+    if (settings.max_frames > 0 && record.frames_offered >= settings.max_frames) break;
+    if (stop_requested) {
+      record.interrupted = true;
+      break;
+    }
+    std::optional<RgbdImage> image = sequence.read(i);
+    ++record.frames_offered;
+    if (!image) continue;
+    if (low_light) image->color = low_light->apply(image->color, image->index);
+    if (!settings.realtime) {
+      system.process(*image);
+      continue;
+    }
+    pace.wait_for(image->stamp);
+    if (!system.try_process(*image)) ++record.frames_dropped;
+  }
+  system.finish();
+}
+
+std::size_t planned_frames(const RunSettings& settings, const RgbdSequence& sequence) {
+  const std::size_t n = (sequence.size() + settings.stride - 1) / settings.stride;
+  return settings.max_frames > 0 ? std::min(n, settings.max_frames) : n;
+}
+
+void print_outcome(const RunSettings& settings, const RunRecord& record,
+                   const RgbdSequence& sequence, const System& system) {
+  const auto stages = system.times().summaries();
+  const auto frame = stages.find("frame");
+  fmt::print(
+      "{} of {} frames tracked, {} keyframes, {} points; {:.1f} ms a frame ({}), {:.1f} s in all\n",
+      tracked_frames(system), record.frames_offered, system.map().keyframe_count(),
+      system.map().point_count(), frame == stages.end() ? 0.0 : frame->second.median_ms,
+      system.extractor().name(), record.wall_s);
+  if (!sequence.skipped().empty()) {
+    const SkippedFrame& first = sequence.skipped().front();
+    fmt::print(stderr, "dxslam: {} frames were skipped; the first, {}: {}\n",
+               sequence.skipped().size(), first.index, first.reason);
+  }
+  if (record.frames_dropped > 0) {
+    fmt::print(stderr, "dxslam: {} frames came too fast and were dropped\n", record.frames_dropped);
+  }
+  if (!settings.out.empty()) fmt::print("results in {}\n", settings.out);
+}
+
+int run(const RunSettings& settings) {
+  const Stopwatch startup;
+  catch_signals();
+  const SystemOptions options = load_system_options(settings);
+  const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, settings.reader);
+  std::unique_ptr<TrajectoryWriter> writer;
+  if (!settings.out.empty()) {
+    make_folder(settings.out);
+    writer =
+        std::make_unique<TrajectoryWriter>(std::filesystem::path(settings.out) / "trajectory.txt");
+  }
+  Progress progress("frames", planned_frames(settings, *sequence));
+  std::size_t done = 0;
+  System system(sequence->camera(), make_extractor(options.features, options.extractor), options,
+                [&](const TrackedFrame& frame) {
+                  if (writer && frame.state == TrackingState::kTracking) {
+                    writer->append({frame.stamp, frame.world_from_camera});
+                  }
+                  progress.update(++done, state_name(frame.state));
+                });
+  RunRecord record;
+  record.startup_ms = startup.ms();
+  const Stopwatch wall;
+  feed(settings, *sequence, system, record);
+  record.wall_s = wall.ms() / 1000.0;
+  progress.finish();
+  if (!settings.out.empty()) {
+    write_results(settings.out, settings, record, options, *sequence, system);
+  }
+  print_outcome(settings, record, *sequence, system);
+  if (record.interrupted) return kInterrupted;
+  const double share = static_cast<double>(tracked_frames(system)) /
+                       static_cast<double>(std::max<std::size_t>(1, record.frames_offered));
+  return share < kMinTrackedShare ? kTrackingFailed : kSuccess;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  auto settings = std::make_shared<RunSettings>();
+  CLI::App* command = app.add_subcommand("run", "Track a recording and build its map");
+  command->add_option("SEQUENCE", settings->sequence, "Folder of the recording")->required();
+  command
+      ->add_option("--format", settings->reader.format, "auto, tum, 7scenes, openloris or folder")
+      ->capture_default_str();
+  command->add_option("--calibration", settings->reader.calibration,
+                      "Camera preset or YAML file (default: by format)");
+  command->add_option("--association", settings->reader.association,
+                      "File that pairs colour with depth images");
+  command->add_option("--config", settings->config, "YAML file; see `dxslam config dump`");
+  command->add_option("--features", settings->features, "Extractor name or model manifest");
+  command->add_option("--out", settings->out, "Folder for trajectory, map and summary");
+  command->add_option("--stride", settings->stride, "Use every n-th frame")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--max-frames", settings->max_frames, "Stop after so many frames");
+  command
+      ->add_option_function<std::vector<double>>(
+          "--low-light",
+          [settings](const std::vector<double>& gain) {
+            settings->low_light = gain.empty() ? LowLight::kDefaultGain : gain.front();
+          },
+          "Darken the images first (low-light model, gain 0.12)")
+      ->expected(0, 1)
+      ->type_name("[=GAIN]");
+  command->add_flag("--realtime", settings->realtime,
+                    "Feed images at their own pace, dropping late ones");
+  command->add_flag("--deterministic", settings->deterministic,
+                    "One thread, exact arithmetic: the same result every time");
+  command->callback([settings] {
+    if (const int code = run(*settings); code != kSuccess) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace dxslam::apps

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/run_output.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/core/version.hpp>
+
+#include "core/options.h"
+#include "evaluation/trajectory_svg.h"
+#include "io/atomic_file.h"
+#include "io/options_yaml.h"
+#include "io/ply_file.h"
+#include "io/trajectory_file.h"
+
+namespace dxslam::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double rounded(double value, double step) { return std::round(value / step) * step; }
+
+double peak_memory_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// Runs of frames without a pose, as [first index, last index, seconds].
+Json lost_intervals(const System& system) {
+  Json intervals = Json::array();
+  const std::vector<TrackedFrame>& frames = system.frames();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].state == TrackingState::kTracking) continue;
+    std::size_t last = i;
+    while (last + 1 < frames.size() && frames[last + 1].state != TrackingState::kTracking) ++last;
+    intervals.push_back({{"first_frame", frames[i].index},
+                         {"last_frame", frames[last].index},
+                         {"frames", last - i + 1},
+                         {"first_stamp", frames[i].stamp},
+                         {"last_stamp", frames[last].stamp}});
+    i = last;
+  }
+  return intervals;
+}
+
+Json stage_table(const System& system) {
+  Json stages = Json::object();
+  for (const auto& [stage, s] : system.times().summaries()) {
+    stages[stage] = {{"count", s.count},
+                     {"median_ms", rounded(s.median_ms, 1e-3)},
+                     {"p95_ms", rounded(s.p95_ms, 1e-3)},
+                     {"max_ms", rounded(s.max_ms, 1e-3)},
+                     {"total_ms", rounded(s.total_ms, 1e-3)}};
+  }
+  return stages;
+}
+
+Json skipped_frames(const RgbdSequence& sequence) {
+  Json skipped = Json::array();
+  for (const SkippedFrame& s : sequence.skipped()) {
+    skipped.push_back({{"frame", s.index}, {"reason", s.reason}});
+  }
+  return skipped;
+}
+
+Json mapping_table(const System& system) {
+  const MappingTotals& m = system.mapping_totals();
+  return {{"keyframes_made", m.keyframes},         {"keyframes_culled", m.culled_keyframes},
+          {"points_from_depth", m.new_points},     {"points_triangulated", m.triangulated_points},
+          {"points_fused", m.fused_points},        {"points_culled", m.culled_points},
+          {"requests_dropped", m.dropped_requests}};
+}
+
+Json summarise(const RunSettings& settings, const RunRecord& record, const SystemOptions& options,
+               const RgbdSequence& sequence, const System& system) {
+  const std::size_t tracked = tracked_frames(system);
+  const double offered = static_cast<double>(std::max<std::size_t>(1, record.frames_offered));
+  Json summary;
+  summary["version"] = DXSLAM_VERSION;
+  summary["sequence"] = sequence.name();
+  summary["features"] = system.extractor().name();
+  summary["frames"] = record.frames_offered;
+  summary["tracked"] = tracked;
+  summary["tracked_share"] = static_cast<double>(tracked) / offered;
+  summary["lost_intervals"] = lost_intervals(system);
+  summary["skipped_frames"] = skipped_frames(sequence);
+  summary["dropped_frames"] = record.frames_dropped;
+  summary["interrupted"] = record.interrupted;
+  summary["keyframes"] = system.map().keyframe_count();
+  summary["points"] = system.map().point_count();
+  summary["mapping"] = mapping_table(system);
+  summary["stages"] = stage_table(system);
+  summary["startup_ms"] = rounded(record.startup_ms, 1e-3);
+  summary["wall_s"] = rounded(record.wall_s, 1e-3);
+  summary["frames_per_second"] = rounded(record.wall_s > 0.0 ? offered / record.wall_s : 0.0, 1e-2);
+  summary["peak_memory_mib"] = rounded(peak_memory_mib(), 0.1);
+  summary["stride"] = settings.stride;
+  summary["low_light_gain"] = settings.low_light ? Json(*settings.low_light) : Json(nullptr);
+  summary["realtime"] = settings.realtime;
+  summary["deterministic"] = options.deterministic;
+  summary["seed"] = options.tracking.pnp.seed;
+  summary["libraries"] = {{"opencv", CV_VERSION},
+                          {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION,
+                                                EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
+  summary["configuration"] = dump_options_yaml(options);
+  return summary;
+}
+
+void write_map(const std::string& path, const Map& map) {
+  std::vector<PlyPoint> points;
+  for (const PointId id : map.point_ids()) {
+    const MapPoint& p = map.point(id);
+    const double seen = std::min(1.0, static_cast<double>(p.observations.size()) / 10.0);
+    points.push_back({p.position, color_of_score(seen)});
+  }
+  std::vector<Eigen::Vector3d> centres;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    centres.push_back(map.keyframe(id).world_from_camera.translation());
+  }
+  write_ply(path, points, centres);
+}
+
+}  // namespace
+
+std::size_t tracked_frames(const System& system) {
+  std::size_t tracked = 0;
+  for (const TrackedFrame& f : system.frames()) {
+    if (f.state == TrackingState::kTracking) ++tracked;
+  }
+  return tracked;
+}
+
+void write_results(const std::string& folder, const RunSettings& settings, const RunRecord& record,
+                   const SystemOptions& options, const RgbdSequence& sequence,
+                   const System& system) {
+  const std::filesystem::path dir(folder);
+  const Trajectory trajectory = system.trajectory();
+  std::filesystem::rename(dir / "trajectory.txt", dir / "trajectory_online.txt");
+  write_trajectory(dir / "trajectory.txt", trajectory);
+  write_trajectory(dir / "keyframes.txt", system.keyframe_trajectory());
+  write_map(dir / "map.ply", system.map());
+  const Json summary = summarise(settings, record, options, sequence, system);
+  write_file_atomically(dir / "summary.json", summary.dump(2) + "\n");
+  write_file_atomically(dir / "trajectory.svg",
+                        draw_trajectory_svg(trajectory, sequence.ground_truth(), sequence.name()));
+}
+
+}  // namespace dxslam::apps

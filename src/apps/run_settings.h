@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/sequence_reader.h"
+#include "slam/system_options.h"
+
+namespace dxslam::apps {
+
+/// What `dxslam run` was asked for.
+struct RunSettings {
+  std::string sequence;
+  SequenceOptions reader;
+  std::string config;
+  std::string features;
+  std::string out;
+  std::size_t stride = 1;
+  std::size_t max_frames = 0;  ///< 0: all
+  std::optional<double> low_light;
+  bool realtime = false;
+  bool deterministic = false;
+};
+
+/// How a run went, beside what the system itself reports.
+struct RunRecord {
+  double startup_ms = 0.0;  ///< from the start of the command to the first image
+  double wall_s = 0.0;      ///< from the first image to the last result
+  std::size_t frames_offered = 0;
+  std::size_t frames_dropped = 0;  ///< real time only: the system was busy
+  bool interrupted = false;
+};
+
+}  // namespace dxslam::apps

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "map/map.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core/error.h"
+#include "map/local_map.h"
+#include "map/point_scene.h"
+
+namespace dxslam {
+namespace {
+
+// A map of `n` keyframes along the path in which every scene point is one map point.
+struct BuiltMap {
+  explicit BuiltMap(int n) {
+    std::map<int, PointId> point_of;
+    for (int k = 0; k < n; ++k) {
+      std::vector<int> source;
+      const SE3 pose = PointScene::pose(0.1 * k);
+      const FramePtr frame = scene.frame(k, pose, 0.0, 1.0, &source);
+      const KeyframeId id =
+          map.add_keyframe(frame, pose, k == 0 ? kNoId : static_cast<KeyframeId>(k - 1));
+      for (std::size_t i = 0; i < source.size(); ++i) {
+        const auto keypoint = static_cast<std::uint32_t>(i);
+        const auto it = point_of.find(source[i]);
+        if (it == point_of.end()) {
+          point_of[source[i]] =
+              map.add_point(scene.points()[static_cast<std::size_t>(source[i])], id, keypoint);
+        } else {
+          EXPECT_TRUE(map.add_observation(it->second, id, keypoint));
+        }
+      }
+    }
+  }
+  PointScene scene{400};
+  Map map;
+};
+
+// Both directions of every relation agree, and covisibility is what a slow count says.
+void expect_consistent(const Map& map) {
+  std::map<std::pair<KeyframeId, KeyframeId>, int> shared;
+  std::size_t bound = 0;
+  for (const PointId id : map.point_ids()) {
+    const MapPoint& p = map.point(id);
+    ASSERT_FALSE(p.observations.empty());
+    ASSERT_LT(p.descriptor, p.observations.size());
+    for (const PointObservation& a : p.observations) {
+      ++bound;
+      ASSERT_EQ(map.keyframe(a.keyframe).points[a.keypoint], id);
+      for (const PointObservation& b : p.observations) {
+        if (a.keyframe != b.keyframe) ++shared[{a.keyframe, b.keyframe}];
+      }
+    }
+  }
+  std::size_t taken = 0;
+  std::size_t edges = 0;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& k = map.keyframe(id);
+    for (const PointId p : k.points) taken += p != kNoId ? 1 : 0;
+    for (const Covisible& c : k.covisibles) {
+      ASSERT_EQ((shared[{id, c.keyframe}]), c.shared);
+      ++edges;
+    }
+    ASSERT_TRUE(k.parent == kNoId || map.has_keyframe(k.parent));
+  }
+  ASSERT_EQ(taken, bound);
+  ASSERT_EQ(edges, shared.size());
+}
+
+TEST(Map, KeepsObservationsAndCovisibilityConsistent) {
+  BuiltMap built(8);
+  Map& map = built.map;
+  expect_consistent(map);
+  EXPECT_GT(map.keyframe(0).covisibles.size(), 2U);
+  map.remove_keyframe(3);
+  expect_consistent(map);
+  const std::vector<PointId> ids = map.point_ids();
+  map.remove_point(ids[5]);
+  expect_consistent(map);
+  for (std::size_t i = 10; i + 1 < 60; i += 2) map.merge_points(ids[i], ids[i + 1]);
+  expect_consistent(map);
+  EXPECT_FALSE(map.has_point(ids[10]));
+  EXPECT_EQ(map.keyframe_count(), 7U);
+}
+
+TEST(Map, MergingMovesOnlyObservationsThatAreFree) {
+  BuiltMap built(3);
+  const std::vector<PointId> ids = built.map.point_ids();
+  const std::size_t before = built.map.point(ids[1]).observations.size();
+  built.map.merge_points(ids[0], ids[1]);  // both are seen by keyframe 0
+  EXPECT_EQ(built.map.point(ids[1]).observations.size(), before);
+  EXPECT_FALSE(built.map.has_point(ids[0]));
+  expect_consistent(built.map);
+}
+
+TEST(Map, RefusesTakenKeypointsAndUnknownIds) {
+  BuiltMap built(2);
+  Map& map = built.map;
+  const std::vector<PointId> ids = map.point_ids();
+  const PointObservation seen = map.point(ids[0]).observations[0];
+  EXPECT_FALSE(map.add_observation(ids[1], seen.keyframe, seen.keypoint));
+  EXPECT_THROW(map.keyframe(99), ContractError);
+  EXPECT_THROW(map.point(999999), ContractError);
+  EXPECT_THROW(map.remove_keyframe(0), ContractError);
+  EXPECT_THROW(map.add_point(Eigen::Vector3d::Zero(), seen.keyframe, seen.keypoint), ContractError);
+}
+
+TEST(Map, ARemovedKeyframeHangsOnItsNearestLivingAncestor) {
+  BuiltMap built(5);
+  Map& map = built.map;
+  const SE3 before = map.keyframe(3).world_from_camera;
+  map.remove_keyframe(3);
+  map.remove_keyframe(2);
+  const Map::Anchor anchor = map.anchor_of(3);
+  EXPECT_EQ(anchor.keyframe, 1U);
+  const SE3 now = map.keyframe(1).world_from_camera * anchor.anchor_from_camera;
+  EXPECT_LT(translation_distance(now, before), 1e-12);
+  EXPECT_LT(rotation_angle(now, before), 1e-9);
+  EXPECT_EQ(map.keyframe(4).parent, 1U);
+}
+
+TEST(Map, BestCovisiblesFallBySharedPoints) {
+  BuiltMap built(8);
+  const std::vector<Covisible> best = built.map.best_covisibles(4, 3, 1);
+  ASSERT_EQ(best.size(), 3U);
+  EXPECT_GE(best[0].shared, best[1].shared);
+  EXPECT_TRUE(best[0].keyframe == 3 || best[0].keyframe == 5);
+  EXPECT_TRUE(built.map.best_covisibles(4, 3, 1000000).empty());
+}
+
+TEST(LocalMap, HoldsThePointsOfCovisibleAndNearbyKeyframes) {
+  BuiltMap built(6);
+  const LocalMapPtr local = make_local_map(built.map, 5, 1, LocalMapOptions());
+  EXPECT_EQ(local->reference, 5U);
+  EXPECT_EQ(local->size(), built.map.point_count());
+  EXPECT_EQ(local->descriptors.rows, static_cast<int>(local->size()));
+  EXPECT_EQ(local->keyframes.size(), 6U);
+  for (std::size_t i = 0; i < local->size(); ++i) {
+    EXPECT_EQ(local->find(local->ids[i]), static_cast<int>(i));
+    EXPECT_EQ(local->positions[i], built.map.point(local->ids[i]).position);
+  }
+  EXPECT_EQ(local->find(123456), -1);
+  ASSERT_NE(local->find_pose(5), nullptr);
+  EXPECT_EQ(local->find_pose(77), nullptr);
+}
+
+TEST(LocalMap, RespectsItsLimits) {
+  BuiltMap built(6);
+  LocalMapOptions options;
+  options.keyframes = 1;
+  options.nearby_keyframes = 0;
+  options.max_points = 150;
+  const LocalMapPtr local = make_local_map(built.map, 5, 1, options);
+  EXPECT_EQ(local->keyframes.size(), 2U);
+  EXPECT_LE(local->size(), 150U);
+}
+
+}  // namespace
+}  // namespace dxslam

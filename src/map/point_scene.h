@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <random>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/frame.h"
+#include "core/se3.h"
+
+namespace dxslam {
+
+/// A cloud of described points in front of a wall, and what a camera sees of it: test scenes for
+/// the layers above features, which need no images. Everything follows from the seed.
+class PointScene {
+ public:
+  explicit PointScene(int points = 2500, unsigned seed = 7) : generator_(seed) {
+    std::uniform_real_distribution<double> x(-4.0, 4.0), y(-1.5, 1.5), z(2.5, 4.5);
+    std::normal_distribution<float> normal;
+    descriptors_.create(points, 32, CV_32F);
+    for (int i = 0; i < points; ++i) {
+      points_.emplace_back(x(generator_), y(generator_), z(generator_));
+      for (int d = 0; d < descriptors_.cols; ++d) descriptors_.at<float>(i, d) = normal(generator_);
+      descriptors_.row(i) /= cv::norm(descriptors_.row(i));
+    }
+    camera_.width = 640;
+    camera_.height = 480;
+    camera_.fx = camera_.fy = 525.0;
+    camera_.cx = 319.5;
+    camera_.cy = 239.5;
+  }
+
+  const Camera& camera() const { return camera_; }
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }
+  DescriptorTraits traits() const { return {false, descriptors_.cols, 0.6F, 0}; }
+
+  /// Pose `t` of 0...1 along a gentle sideways path that starts at the origin.
+  static SE3 pose(double t) {
+    Vector6d motion;
+    motion << 2.0 * t, 0.1 * std::sin(6.0 * t), 0.3 * t, 0.05 * std::sin(5.0 * t), -0.2 * t, 0.0;
+    return {so3_exp(motion.tail<3>()), motion.head<3>()};
+  }
+
+  /// Keypoints of all points in view with pixel noise; `depth_share` of them have depth, and
+  /// `source` (if given) receives the point behind each keypoint.
+  FramePtr frame(std::int64_t index, const SE3& world_from_camera, double noise = 0.3,
+                 double depth_share = 0.8, std::vector<int>* source = nullptr) {
+    auto frame = std::make_shared<Frame>();
+    frame->index = index;
+    frame->stamp = static_cast<double>(index) / 30.0;
+    std::normal_distribution<double> normal(0.0, noise);
+    std::uniform_real_distribution<double> uniform;
+    const SE3 camera_from_world = world_from_camera.inverse();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector3d p = camera_from_world * points_[i];
+      if (p.z() < 0.3) continue;
+      const Eigen::Vector2d pixel =
+          camera_.project(p) + Eigen::Vector2d(normal(generator_), normal(generator_));
+      if (!camera_.contains(pixel)) continue;
+      frame->pixels.push_back(pixel.cast<float>());
+      frame->depths.push_back(uniform(generator_) < depth_share ? static_cast<float>(p.z()) : 0.0F);
+      frame->scores.push_back(1.0F);
+      frame->sigmas.push_back(1.0F);
+      frame->descriptors.push_back(descriptors_.row(static_cast<int>(i)));
+      if (source != nullptr) source->push_back(static_cast<int>(i));
+    }
+    return frame;
+  }
+
+ private:
+  std::mt19937 generator_;
+  Camera camera_;
+  std::vector<Eigen::Vector3d> points_;
+  cv::Mat descriptors_;
+};
+
+}  // namespace dxslam

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "slam/bounded_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace dxslam {
+namespace {
+
+TEST(BoundedQueue, KeepsOrderAcrossThreads) {
+  BoundedQueue<int> queue(3);
+  std::thread producer([&] {
+    for (int i = 0; i < 1000; ++i) ASSERT_TRUE(queue.push(i));
+    queue.close();
+  });
+  int expected = 0;
+  while (const std::optional<int> item = queue.pop()) ASSERT_EQ(*item, expected++);
+  EXPECT_EQ(expected, 1000);
+  producer.join();
+}
+
+TEST(BoundedQueue, RefusesWhenFullOrClosed) {
+  BoundedQueue<int> queue(1);
+  EXPECT_TRUE(queue.try_push(1));
+  EXPECT_FALSE(queue.try_push(2));
+  queue.close();
+  EXPECT_FALSE(queue.push(3));
+  EXPECT_EQ(queue.pop(), 1);
+  EXPECT_EQ(queue.pop(), std::nullopt);
+}
+
+TEST(BoundedQueue, ClosingWakesAWaitingProducer) {
+  BoundedQueue<int> queue(1);
+  queue.push(1);
+  std::thread producer([&] { EXPECT_FALSE(queue.push(2)); });
+  queue.close();
+  producer.join();
+}
+
+}  // namespace
+}  // namespace dxslam

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "tracking/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "map/point_scene.h"
+
+namespace dxslam {
+namespace {
+
+// A tracker with a map of one keyframe at the origin in which all keypoints with depth are points.
+class TrackerTest : public testing::Test {
+ protected:
+  TrackerTest() : tracker_(scene_.camera(), scene_.traits(), TrackerOptions()) {}
+
+  void start() {
+    const FramePtr frame = scene_.frame(0, SE3());
+    std::optional<KeyframeRequest> request;
+    const TrackedFrame first = tracker_.track(frame, request);
+    ASSERT_EQ(first.state, TrackingState::kTracking);
+    ASSERT_TRUE(request.has_value());
+    EXPECT_EQ(request->reference, kNoId);
+    const KeyframeId id = map_.add_keyframe(frame, SE3(), kNoId);
+    for (std::size_t i = 0; i < frame->size(); ++i) {
+      if (!frame->has_depth(i)) continue;
+      map_.add_point(scene_.camera().unproject(frame->pixels[i].cast<double>(), frame->depths[i]),
+                     id, static_cast<std::uint32_t>(i));
+    }
+    tracker_.set_local_map(make_local_map(map_, id, 1, LocalMapOptions()));
+  }
+
+  PointScene scene_;
+  Tracker tracker_;
+  Map map_;
+  std::optional<KeyframeRequest> request_;
+};
+
+TEST_F(TrackerTest, FollowsASmoothPath) {
+  start();
+  for (int i = 1; i <= 20; ++i) {
+    const SE3 truth = PointScene::pose(0.01 * i);
+    const TrackedFrame tracked = tracker_.track(scene_.frame(i, truth), request_);
+    ASSERT_EQ(tracked.state, TrackingState::kTracking) << i;
+    EXPECT_LT(translation_distance(tracked.world_from_camera, truth), 0.01) << i;
+    EXPECT_LT(rotation_angle(tracked.world_from_camera, truth), 0.005) << i;
+    EXPECT_FALSE(tracked.recovered) << i;
+    EXPECT_GT(tracked.inliers, 100) << i;
+  }
+}
+
+TEST_F(TrackerTest, FindsItselfAfterAJumpByDescriptorsAlone) {
+  start();
+  const SE3 truth = PointScene::pose(0.25);
+  const TrackedFrame tracked = tracker_.track(scene_.frame(1, truth), request_);
+  ASSERT_EQ(tracked.state, TrackingState::kTracking);
+  EXPECT_TRUE(tracked.recovered);
+  EXPECT_LT(translation_distance(tracked.world_from_camera, truth), 0.02);
+  EXPECT_TRUE(request_.has_value()) << "so far away a keyframe is due";
+}
+
+TEST_F(TrackerTest, SaysLostInFrontOfSomethingElseAndRecovers) {
+  start();
+  PointScene elsewhere(2500, 99);
+  const TrackedFrame lost = tracker_.track(elsewhere.frame(1, SE3()), request_);
+  EXPECT_EQ(lost.state, TrackingState::kLost);
+  EXPECT_FALSE(request_.has_value());
+  const TrackedFrame back = tracker_.track(scene_.frame(2, PointScene::pose(0.05)), request_);
+  EXPECT_EQ(back.state, TrackingState::kTracking);
+  EXPECT_TRUE(back.recovered);
+}
+
+TEST_F(TrackerTest, SurvivesAFrameWithoutKeypoints) {
+  start();
+  const auto empty = std::make_shared<Frame>();
+  EXPECT_EQ(tracker_.track(empty, request_).state, TrackingState::kLost);
+  EXPECT_EQ(tracker_.track(scene_.frame(2, SE3()), request_).state, TrackingState::kTracking);
+}
+
+TEST_F(TrackerTest, DoesNotStartWithoutDepth) {
+  const TrackedFrame tracked = tracker_.track(scene_.frame(0, SE3(), 0.3, 0.0), request_);
+  EXPECT_EQ(tracked.state, TrackingState::kNotStarted);
+  EXPECT_FALSE(request_.has_value());
+}
+
+TEST_F(TrackerTest, PosesFollowTheKeyframeWhenMappingMovesIt) {
+  start();
+  tracker_.track(scene_.frame(1, PointScene::pose(0.01)), request_);
+  const SE3 shift(Eigen::Quaterniond::Identity(), Eigen::Vector3d(5.0, 0.0, 0.0));
+  for (const PointId id : map_.point_ids()) map_.set_position(id, shift * map_.point(id).position);
+  map_.set_pose(0, shift);
+  tracker_.set_local_map(make_local_map(map_, 0, 2, LocalMapOptions()));
+  const SE3 truth = PointScene::pose(0.02);
+  const TrackedFrame tracked = tracker_.track(scene_.frame(2, truth), request_);
+  ASSERT_EQ(tracked.state, TrackingState::kTracking);
+  EXPECT_FALSE(tracked.recovered);
+  EXPECT_LT(translation_distance(tracked.world_from_camera, shift * truth), 0.01);
+  EXPECT_LT(translation_distance(tracked.reference_from_camera, truth), 0.01);
+}
+
+TEST_F(TrackerTest, ACameraAtRestMakesNoKeyframes) {
+  start();
+  for (int i = 1; i <= 100; ++i) {
+    tracker_.track(scene_.frame(i, SE3()), request_);
+    ASSERT_FALSE(request_.has_value()) << i;
+  }
+}
+
+TEST(TrackerOptions, NameTheFieldThatIsOutOfRange) {
+  PointScene scene(10);
+  TrackerOptions options;
+  options.keyframe.min_gap = 0;
+  try {
+    const Tracker tracker(scene.camera(), scene.traits(), options);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(), "option tracking.keyframe.min_gap is 0 frames, expected 1 to 1000");
+  }
+}
+
+}  // namespace
+}  // namespace dxslam
