@@ -135,6 +135,19 @@ bool YamlMap::take_integer(const char* name, long long& value, Range range, cons
   return true;
 }
 
+bool YamlMap::take(const char* name, std::vector<double>& values) {
+  const Entry* entry = state_->find(name);
+  if (entry == nullptr) return false;
+  if (!entry->value.IsSequence()) state_->fail(*entry, "a list of numbers");
+  values.clear();
+  for (const auto& item : entry->value) {
+    const std::optional<double> number = parse_number(item.IsScalar() ? item.Scalar() : "");
+    if (!number) state_->fail(*entry, "a list of numbers");
+    values.push_back(*number);
+  }
+  return true;
+}
+
 std::optional<YamlMap> YamlMap::take_map(const char* name) {
   const Entry* entry = state_->find(name);
   if (entry == nullptr) return std::nullopt;

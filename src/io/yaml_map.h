@@ -29,6 +29,8 @@ class YamlMap {
   bool take(const char* name, double& value, Range range, const char* unit);
   /// For whole numbers of any width.
   bool take_integer(const char* name, long long& value, Range range, const char* unit);
+  /// For a list of numbers.
+  bool take(const char* name, std::vector<double>& values);
   /// Entry `name` as a map; nothing if there is none.
   std::optional<YamlMap> take_map(const char* name);
 
