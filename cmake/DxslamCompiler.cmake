@@ -26,7 +26,8 @@ if(DXSLAM_TIDY)
   set(CMAKE_CXX_CLANG_TIDY ${CLANG_TIDY_PROGRAM} --quiet)
 endif()
 if(DXSLAM_SANITIZE)
-  add_compile_options(-fsanitize=${DXSLAM_SANITIZE} -fno-omit-frame-pointer)
+  add_compile_options(-fsanitize=${DXSLAM_SANITIZE} -fno-sanitize-recover=all
+                      -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${DXSLAM_SANITIZE})
 endif()
 
