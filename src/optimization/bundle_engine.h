@@ -70,4 +70,8 @@ inline Eigen::Matrix3d bundle_jacobian(const Camera& camera, const BundleProblem
 /// Minimises by Ceres; any size. Bit-identical over repeats if options.threads is 1.
 BundleStageReport minimise_with_ceres(const BundleStage& stage, BundleState& state);
 
+/// Minimises by the own solver, in one thread whatever options.threads says; memory grows with the
+/// square and time with the cube of the free poses. Always bit-identical over repeats.
+BundleStageReport minimise_with_schur(const BundleStage& stage, BundleState& state);
+
 }  // namespace dxslam

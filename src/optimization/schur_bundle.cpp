@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+//
+// Levenberg-Marquardt for small bundles. Points are eliminated one by one in blocks of fixed size
+// and the poses are solved for densely, so that nothing is allocated, indexed or virtual in the
+// inner loops (Triggs et al., Bundle Adjustment - A Modern Synthesis, section 6, 1999).
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "optimization/bundle_engine.h"
+
+namespace dxslam {
+namespace {
+
+using Matrix63d = Eigen::Matrix<double, 6, 3>;
+
+constexpr double kInitialDamping = 1e-4;  // share of the diagonal of the normal equations
+constexpr double kMinDamping = 1e-9;
+constexpr double kMaxDamping = 1e8;      // beyond it no step can help any more
+constexpr double kSmallDecrease = 1e-6;  // share of the cost at which the minimum counts as reached
+constexpr double kTinyDiagonal = 1e-9;   // keeps directions without any constraint solvable
+
+/// An observation that takes part, laid out for the sweep over points.
+struct Link {
+  int pose = 0;
+  int slot = -1;  ///< place among the free poses, -1 if held
+  int observation = 0;
+};
+
+struct PointBlock {
+  int point = 0;
+  int first = 0;  ///< range of links
+  int last = 0;
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d root = Eigen::Matrix3d::Zero();     ///< lower Cholesky factor L, damped hessian
+  Eigen::Vector3d reduced = Eigen::Vector3d::Zero();  ///< L^-1 gradient
+};
+
+struct PoseBlock {
+  int pose = 0;
+  Matrix6d hessian = Matrix6d::Zero();  ///< lower triangle
+  Vector6d gradient = Vector6d::Zero();
+};
+
+/// Lower Cholesky factor of a damped 3x3 block; false if that is not positive definite.
+bool factorise(const Eigen::Matrix3d& a, double damping, Eigen::Matrix3d& l) {
+  const Eigen::Vector3d d =
+      a.diagonal() * (1.0 + damping) + Eigen::Vector3d::Constant(kTinyDiagonal);
+  l.setZero();
+  if (!(d(0) > 0.0)) return false;
+  l(0, 0) = std::sqrt(d(0));
+  l(1, 0) = a(1, 0) / l(0, 0);
+  l(2, 0) = a(2, 0) / l(0, 0);
+  const double d1 = d(1) - l(1, 0) * l(1, 0);
+  if (!(d1 > 0.0)) return false;
+  l(1, 1) = std::sqrt(d1);
+  l(2, 1) = (a(2, 1) - l(2, 0) * l(1, 0)) / l(1, 1);
+  const double d2 = d(2) - l(2, 0) * l(2, 0) - l(2, 1) * l(2, 1);
+  if (!(d2 > 0.0)) return false;
+  l(2, 2) = std::sqrt(d2);
+  return true;
+}
+
+class SchurSolver {
+ public:
+  SchurSolver(const BundleStage& stage, BundleState& state) : stage_(stage), state_(state) {
+    collect_poses();
+    collect_points();
+    const auto size = static_cast<Eigen::Index>(6 * poses_.size());
+    reduced_.resize(size, size);
+    pose_step_.resize(size);
+    cross_.resize(links_.size());
+    scaled_.resize(links_.size());
+    rotations_.resize(state.camera_from_world.size());
+  }
+
+  BundleStageReport run() {
+    BundleStageReport report;
+    double damping = kInitialDamping;
+    double growth = 2.0;
+    double cost = linearise();
+    BundleState trial = state_;
+    bool fresh = true;
+    while (report.iterations < stage_.iterations && damping < kMaxDamping) {
+      if (stage_.stopped()) {
+        report.cancelled = true;
+        return report;
+      }
+      if (!fresh) cost = linearise();
+      fresh = true;
+      ++report.iterations;
+      const double predicted = solve(damping) ? move(damping, trial) : -1.0;
+      const double trial_cost = predicted > 0.0 ? total_cost(trial) : cost;
+      if (!(trial_cost < cost)) {
+        damping *= growth;
+        growth *= 2.0;
+        continue;
+      }
+      const double gain = 2.0 * (cost - trial_cost) / predicted - 1.0;
+      damping = std::max(kMinDamping, damping * std::max(1.0 / 3.0, 1.0 - gain * gain * gain));
+      growth = 2.0;
+      std::swap(state_, trial);
+      fresh = false;
+      if (cost - trial_cost < kSmallDecrease * cost) break;
+    }
+    report.usable = std::isfinite(cost);
+    return report;
+  }
+
+ private:
+  void collect_poses() {
+    slots_.assign(state_.camera_from_world.size(), -1);
+    const auto& observations = stage_.problem->observations;
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      const auto pose = static_cast<std::size_t>(observations[i].pose);
+      if (stage_.active[i] != 0 && stage_.held[pose] == 0) slots_[pose] = 0;
+    }
+    for (std::size_t pose = 0; pose < slots_.size(); ++pose) {
+      if (slots_[pose] < 0) continue;
+      slots_[pose] = static_cast<int>(poses_.size());
+      poses_.emplace_back();
+      poses_.back().pose = static_cast<int>(pose);
+    }
+  }
+
+  /// Counting sort of the active observations by point.
+  void collect_points() {
+    const auto& observations = stage_.problem->observations;
+    std::vector<int> start(state_.points.size() + 1, 0);
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      if (stage_.active[i] != 0) ++start[static_cast<std::size_t>(observations[i].point) + 1];
+    }
+    for (std::size_t p = 0; p + 1 < start.size(); ++p) {
+      start[p + 1] += start[p];
+      if (start[p + 1] > start[p]) {
+        PointBlock block;
+        block.point = static_cast<int>(p);
+        block.first = start[p];
+        block.last = start[p + 1];
+        points_.push_back(block);
+      }
+    }
+    links_.resize(static_cast<std::size_t>(start.back()));
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      if (stage_.active[i] == 0) continue;
+      const BundleProblem::Observation& o = observations[i];
+      links_[static_cast<std::size_t>(start[static_cast<std::size_t>(o.point)]++)] = {
+          o.pose, slots_[static_cast<std::size_t>(o.pose)], static_cast<int>(i)};
+    }
+  }
+
+  const BundleProblem::Observation& observation(const Link& link) const {
+    return stage_.problem->observations[static_cast<std::size_t>(link.observation)];
+  }
+
+  void update_rotations(const BundleState& state) {
+    for (std::size_t i = 0; i < rotations_.size(); ++i) {
+      rotations_[i] = state.camera_from_world[i].rotation().toRotationMatrix();
+    }
+  }
+
+  Eigen::Vector3d in_camera(const BundleState& state, const Link& link,
+                            const Eigen::Vector3d& point) const {
+    const auto pose = static_cast<std::size_t>(link.pose);
+    return rotations_[pose] * point + state.camera_from_world[pose].translation();
+  }
+
+  /// Cost of one squared residual and the weight that makes it quadratic (Huber).
+  double kernel(const BundleProblem::Observation& o, double error2, double& weight) const {
+    const double gate2 = bundle_gate2(o, *stage_.options);
+    weight = 1.0;
+    if (!stage_.robust || error2 <= gate2) return error2;
+    weight = std::sqrt(gate2 / error2);
+    return 2.0 * weight * error2 - gate2;
+  }
+
+  double total_cost(const BundleState& state) {
+    update_rotations(state);
+    double sum = 0.0;
+    double weight = 1.0;
+    for (const PointBlock& block : points_) {
+      const Eigen::Vector3d& point = state.points[static_cast<std::size_t>(block.point)];
+      for (int k = block.first; k < block.last; ++k) {
+        const Link& link = links_[static_cast<std::size_t>(k)];
+        const BundleProblem::Observation& o = observation(link);
+        const Eigen::Vector3d p = in_camera(state, link, point);
+        sum += kernel(o, bundle_residual(*stage_.camera, o, p).squaredNorm(), weight);
+      }
+    }
+    return 0.5 * sum;
+  }
+
+  /// Normal equations at the current state; returns the cost.
+  double linearise() {
+    update_rotations(state_);
+    for (PoseBlock& block : poses_) {
+      block.hessian.setZero();
+      block.gradient.setZero();
+    }
+    double sum = 0.0;
+    for (PointBlock& block : points_) {
+      block.hessian.setZero();
+      block.gradient.setZero();
+      for (int k = block.first; k < block.last; ++k) {
+        sum += linearise(block, static_cast<std::size_t>(k));
+      }
+    }
+    return 0.5 * sum;
+  }
+
+  double linearise(PointBlock& block, std::size_t k) {
+    const Link& link = links_[k];
+    const BundleProblem::Observation& o = observation(link);
+    const Eigen::Vector3d p =
+        in_camera(state_, link, state_.points[static_cast<std::size_t>(block.point)]);
+    const Eigen::Vector3d residual = bundle_residual(*stage_.camera, o, p);
+    double weight = 1.0;
+    const double cost = kernel(o, residual.squaredNorm(), weight);
+
+    // The information of the point in the camera frame carries over to pose and point alike.
+    const Eigen::Matrix3d by_camera = bundle_jacobian(*stage_.camera, o, p);
+    const Eigen::Matrix3d weighted = weight * by_camera;
+    const Eigen::Vector3d pull = weighted.transpose() * residual;
+    const Eigen::Matrix3d information = weighted.transpose() * by_camera;
+    const Eigen::Matrix3d& rotation = rotations_[static_cast<std::size_t>(link.pose)];
+    const Eigen::Matrix3d turned = information * rotation;
+    block.hessian.noalias() += rotation.transpose() * turned;
+    block.gradient.noalias() += rotation.transpose() * pull;
+    if (link.slot < 0) return cost;
+
+    PoseBlock& pose = poses_[static_cast<std::size_t>(link.slot)];
+    const Eigen::Matrix3d lever = skew(p);
+    const Eigen::Matrix3d moment = lever * information;
+    pose.hessian.topLeftCorner<3, 3>() += information;
+    pose.hessian.bottomLeftCorner<3, 3>() += moment;
+    pose.hessian.bottomRightCorner<3, 3>().noalias() -= moment * lever;
+    pose.gradient.head<3>() += pull;
+    pose.gradient.tail<3>() += p.cross(pull);
+    cross_[k].topRows<3>() = turned;
+    cross_[k].bottomRows<3>().noalias() = lever * turned;
+    return cost;
+  }
+
+  /// Eliminates the points and solves for the poses. False if the system is not positive definite.
+  bool solve(double damping) {
+    reduced_.setZero();
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(6 * i);
+      auto diagonal = reduced_.block<6, 6>(at, at);
+      diagonal = poses_[i].hessian;
+      diagonal.diagonal() +=
+          damping * poses_[i].hessian.diagonal() + Vector6d::Constant(kTinyDiagonal);
+      pose_step_.segment<6>(at) = -poses_[i].gradient;
+    }
+    for (PointBlock& block : points_) {
+      if (!factorise(block.hessian, damping, block.root)) return false;
+      eliminate(block);
+    }
+    if (poses_.empty()) return true;
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> factor(reduced_);
+    if (factor.info() != Eigen::Success) return false;
+    factor.solveInPlace(pose_step_);
+    return true;
+  }
+
+  void eliminate(PointBlock& block) {
+    const Eigen::Matrix3d& l = block.root;
+    Eigen::Vector3d& y = block.reduced;
+    y(0) = block.gradient(0) / l(0, 0);
+    y(1) = (block.gradient(1) - l(1, 0) * y(0)) / l(1, 1);
+    y(2) = (block.gradient(2) - l(2, 0) * y(0) - l(2, 1) * y(1)) / l(2, 2);
+    for (int i = block.first; i < block.last; ++i) {
+      const int slot = links_[static_cast<std::size_t>(i)].slot;
+      if (slot < 0) continue;
+      const Matrix63d& w = cross_[static_cast<std::size_t>(i)];
+      Matrix63d& s = scaled_[static_cast<std::size_t>(i)];  // w L^-T
+      s.col(0) = w.col(0) / l(0, 0);
+      s.col(1) = (w.col(1) - l(1, 0) * s.col(0)) / l(1, 1);
+      s.col(2) = (w.col(2) - l(2, 0) * s.col(0) - l(2, 1) * s.col(1)) / l(2, 2);
+      pose_step_.segment<6>(6 * slot) += s * y;
+      reduced_.block<6, 6>(6 * slot, 6 * slot).noalias() -= s * s.transpose();
+      for (int j = block.first; j < i; ++j) couple(i, j);
+    }
+  }
+
+  /// Fill-in between two poses that see one point; only the lower triangle is kept.
+  void couple(int i, int j) {
+    const int a = links_[static_cast<std::size_t>(i)].slot;
+    const int b = links_[static_cast<std::size_t>(j)].slot;
+    if (b < 0) return;
+    const Matrix63d& s = scaled_[static_cast<std::size_t>(i)];
+    const Matrix63d& t = scaled_[static_cast<std::size_t>(j)];
+    if (a >= b) reduced_.block<6, 6>(6 * a, 6 * b).noalias() -= s * t.transpose();
+    // Both halves where one pose sees the point twice.
+    if (a <= b) reduced_.block<6, 6>(6 * b, 6 * a).noalias() -= t * s.transpose();
+  }
+
+  /// Applies the step to a copy of the state; returns the decrease of cost the model predicts.
+  double move(double damping, BundleState& trial) {
+    trial = state_;
+    double predicted = 0.0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const Vector6d step = pose_step_.segment<6>(static_cast<Eigen::Index>(6 * i));
+      const PoseBlock& block = poses_[i];
+      predicted +=
+          damping * step.cwiseAbs2().dot(block.hessian.diagonal()) - step.dot(block.gradient);
+      SE3& pose = trial.camera_from_world[static_cast<std::size_t>(block.pose)];
+      pose = SE3::exp(step) * pose;
+    }
+    for (const PointBlock& block : points_) {
+      const Eigen::Vector3d step = point_step(block);
+      predicted +=
+          damping * step.cwiseAbs2().dot(block.hessian.diagonal()) - step.dot(block.gradient);
+      trial.points[static_cast<std::size_t>(block.point)] += step;
+    }
+    return 0.5 * predicted;
+  }
+
+  Eigen::Vector3d point_step(const PointBlock& block) const {
+    Eigen::Vector3d y = -block.reduced;
+    for (int k = block.first; k < block.last; ++k) {
+      const int slot = links_[static_cast<std::size_t>(k)].slot;
+      if (slot < 0) continue;
+      y.noalias() -=
+          scaled_[static_cast<std::size_t>(k)].transpose() * pose_step_.segment<6>(6 * slot);
+    }
+    const Eigen::Matrix3d& l = block.root;
+    Eigen::Vector3d step;
+    step(2) = y(2) / l(2, 2);
+    step(1) = (y(1) - l(2, 1) * step(2)) / l(1, 1);
+    step(0) = (y(0) - l(1, 0) * step(1) - l(2, 0) * step(2)) / l(0, 0);
+    return step;
+  }
+
+  const BundleStage& stage_;
+  BundleState& state_;
+  std::vector<int> slots_;  ///< one a pose: place among the free ones that are seen, or -1
+  std::vector<PoseBlock> poses_;
+  std::vector<PointBlock> points_;
+  std::vector<Link> links_;        ///< by point
+  std::vector<Matrix63d> cross_;   ///< pose-point blocks of the hessian, one a link
+  std::vector<Matrix63d> scaled_;  ///< the same times L^-T of the point
+  std::vector<Eigen::Matrix3d> rotations_;
+  Eigen::MatrixXd reduced_;  ///< camera system after the elimination, lower triangle
+  Eigen::VectorXd pose_step_;
+};
+
+}  // namespace
+
+BundleStageReport minimise_with_schur(const BundleStage& stage, BundleState& state) {
+  return SchurSolver(stage, state).run();
+}
+
+}  // namespace dxslam
