@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/commands.h"
+#include "synthetic/tum_writer.h"
+
+namespace dxslam::apps {
+namespace {
+
+struct SynthArguments {
+  std::string out;
+  SyntheticOptions options;
+  std::vector<std::string> factors;
+  bool force = false;
+  bool png = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+// One line that is redrawn on a terminal, a line every ten percent elsewhere.
+class Progress {
+ public:
+  bool operator()(std::size_t done, std::size_t total) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    const double rate = static_cast<double>(done) / std::max(seconds, 1e-3);
+    const double left = static_cast<double>(total - done) / std::max(rate, 1e-3);
+    const int percent = static_cast<int>(100 * done / total);
+    if (isatty(STDERR_FILENO) != 0) {
+      std::fprintf(stderr, "\rdrawing %zu/%zu  %d %%  %.1f frames/s  %.0f s left   ", done, total,
+                   percent, rate, left);
+      if (done == total) std::fputc('\n', stderr);
+    } else if (percent / 10 > last_ / 10 || done == total) {
+      std::fprintf(stderr, "drawing %zu/%zu, %.1f frames/s\n", done, total, rate);
+    }
+    last_ = percent;
+    return true;
+  }
+
+ private:
+  Clock::time_point start_ = Clock::now();
+  int last_ = 0;
+};
+
+std::string factor_help() {
+  std::string text = "NAME or NAME=STRENGTH, may be repeated: ";
+  for (const FactorName& factor : factor_names()) {
+    if (&factor != &factor_names().front()) text += ", ";
+    text += factor.name;
+  }
+  return text;
+}
+
+void run_synth(SynthArguments& arguments) {
+  for (const std::string& factor : arguments.factors) {
+    set_factor(arguments.options.factors, factor);
+  }
+  const SyntheticSequence sequence(arguments.options);
+  TumWriterOptions writer;
+  writer.overwrite = arguments.force;
+  writer.png = arguments.png;
+  writer.threads = arguments.options.threads;
+  writer.progress = Progress();
+  write_tum_sequence(sequence, arguments.out, writer);
+  std::printf("%zu frames, %.1f m, in %s\n", sequence.size(), sequence.path_length(),
+              arguments.out.c_str());
+}
+
+}  // namespace
+
+void add_synth_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("synth", "Make a recording of a synthetic place (TUM RGB-D format)");
+  auto arguments = std::make_shared<SynthArguments>();
+  SyntheticOptions& options = arguments->options;
+  options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("OUT", arguments->out, "folder to write to")->required();
+  command->add_option("--scene", options.scene, "room, office or corridor (a loop of 208 m)")
+      ->capture_default_str();
+  command->add_option("--frames", options.frames, "most frames; 0: the whole path")
+      ->capture_default_str();
+  command->add_option("--fps", options.fps, "frames a second")->capture_default_str();
+  command->add_option("--seed", options.seed, "place and walk")->capture_default_str();
+  command->add_option("--width", options.width, "pixels")->capture_default_str();
+  command->add_option("--height", options.height, "pixels")->capture_default_str();
+  command->add_option("--speed", options.path.speed, "walking speed, m/s; 0: the scene's own")
+      ->capture_default_str();
+  command->add_option("--camera-height", options.path.height, "metres above the floor")
+      ->capture_default_str();
+  command
+      ->add_option("--offset", options.path.sideways,
+                   "metres that the path is shifted to the right, -0.4 to 0.4")
+      ->capture_default_str();
+  command->add_flag("--reverse", options.path.reverse,
+                    "walk the path the other way, looking the other way");
+  command->add_option("--standstill", options.path.standstill, "seconds at rest before the walk")
+      ->capture_default_str();
+  command->add_option("--factor", arguments->factors, factor_help())->allow_extra_args(false);
+  command->add_option("--factor-seed", options.factors.seed, "seed of the factors")
+      ->capture_default_str();
+  command->add_flag("--png", arguments->png, "colour images without loss instead of JPEG");
+  command->add_flag("--force", arguments->force, "replace a recording in OUT");
+  command->add_option("--threads", options.threads, "frames drawn at once")->capture_default_str();
+  command->callback([arguments] { run_synth(*arguments); });
+}
+
+}  // namespace dxslam::apps

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "synthetic/tum_writer.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/calibration.h"
+#include "io/trajectory_file.h"
+#include "synthetic/parallel.h"
+
+namespace dxslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Visitor that puts the described options into a JSON object.
+class JsonVisitor {
+ public:
+  void operator()(const char* name, const bool& value, const char*, const char*) {
+    json[name] = value;
+  }
+  void operator()(const char* name, const std::string& value, const char*, const char*) {
+    json[name] = value;
+  }
+  template <class Number>
+  void operator()(const char* name, const Number& value, Range, const char*, const char*) {
+    json[name] = value;
+  }
+  template <class Options>
+  void group(const char* name, const Options& options) {
+    JsonVisitor nested;
+    Options::describe(options, nested);
+    json[name] = nested.json;
+  }
+  nlohmann::ordered_json json;
+};
+
+void prepare_folder(const fs::path& folder, bool overwrite) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    throw InputError(fmt::format("'{}' is a file, expected a folder to write to", folder.string()));
+  }
+  if (fs::is_directory(folder, error) && !fs::is_empty(folder, error)) {
+    if (!overwrite) {
+      throw InputError(fmt::format(
+          "folder '{}' is not empty, expected a new or empty one (--force replaces a recording)",
+          folder.string()));
+    }
+    // Only what this function writes; anything else in the folder stays.
+    for (const char* name : {"rgb.txt", "depth.txt", "groundtruth.txt", "calibration.yaml",
+                             "scene.json", "rgb", "depth"}) {
+      fs::remove_all(folder / name, error);
+    }
+  }
+  for (const char* name : {"rgb", "depth"}) {
+    fs::create_directories(folder / name, error);
+    if (error) {
+      throw InputError(
+          fmt::format("cannot create folder '{}': {}", (folder / name).string(), error.message()));
+    }
+  }
+}
+
+void write_image(const fs::path& file, const cv::Mat& image, const std::vector<int>& parameters) {
+  bool written = false;
+  try {
+    written = cv::imwrite(file.string(), image, parameters);
+  } catch (const cv::Exception&) {
+    written = false;
+  }
+  if (!written)
+    throw InputError(
+        fmt::format("cannot write image '{}' (full disk or no permission?)", file.string()));
+}
+
+std::string list_of(const SyntheticSequence& sequence, const std::string& folder,
+                    const std::string& type) {
+  std::string text = fmt::format("# {} images, stamp in seconds and file\n", folder);
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const double stamp = sequence.stamp(i);
+    text += fmt::format("{0:.6f} {1}/{0:.6f}.{2}\n", stamp, folder, type);
+  }
+  return text;
+}
+
+void write_frame(const RgbdImage& image, const fs::path& folder, double depth_factor,
+                 const std::string& type) {
+  const std::string stem = fmt::format("{:.6f}", image.stamp);
+  write_image(folder / "rgb" / (stem + "." + type), image.color,
+              {cv::IMWRITE_JPEG_QUALITY, 95, cv::IMWRITE_PNG_COMPRESSION, 1});
+  cv::Mat raw;
+  image.depth.convertTo(raw, CV_16UC1, depth_factor);
+  write_image(folder / "depth" / (stem + ".png"), raw, {cv::IMWRITE_PNG_COMPRESSION, 1});
+}
+
+}  // namespace
+
+std::string describe_scene(const SyntheticSequence& sequence) {
+  JsonVisitor visitor;
+  SyntheticOptions::describe(sequence.options(), visitor);
+  nlohmann::ordered_json scene;
+  scene["options"] = visitor.json;
+  scene["options"].erase("threads");  // has no influence
+  scene["frames"] = sequence.size();
+  scene["duration_s"] = sequence.ground_truth().back().stamp;
+  scene["path_length_m"] = sequence.path_length();
+  scene["surfaces"] = sequence.world().surfaces.size();
+  scene["things"] = sequence.layout().placements.size();
+  return scene.dump(2) + "\n";
+}
+
+bool write_tum_sequence(const SyntheticSequence& sequence, const std::string& folder,
+                        const TumWriterOptions& options) {
+  const fs::path root(folder);
+  prepare_folder(root, options.overwrite);
+  const std::string type = options.png ? "png" : "jpg";
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> stop{false};
+  std::mutex mutex;
+  std::size_t done = 0;
+  std::exception_ptr failure;
+  parallel_ranges(options.threads, options.threads, [&](int, int) {
+    for (std::size_t i = next++; i < sequence.size() && !stop; i = next++) {
+      try {
+        write_frame(sequence.draw(i, 1), root, sequence.camera().depth_factor, type);
+        const std::lock_guard lock(mutex);
+        ++done;
+        if (options.progress && !options.progress(done, sequence.size())) stop = true;
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        failure = std::current_exception();
+        stop = true;
+      }
+    }
+  });
+  if (failure) std::rethrow_exception(failure);
+  if (done < sequence.size()) return false;
+  const auto path = [&](const char* name) { return (root / name).string(); };
+  write_file_atomically(path("calibration.yaml"),
+                        dump_camera(sequence.camera(), "synthetic camera"));
+  write_file_atomically(path("scene.json"), describe_scene(sequence));
+  write_trajectory(path("groundtruth.txt"), sequence.ground_truth());
+  write_file_atomically(path("depth.txt"), list_of(sequence, "depth", "png"));
+  write_file_atomically(path("rgb.txt"), list_of(sequence, "rgb", type));
+  return true;
+}
+
+}  // namespace dxslam
