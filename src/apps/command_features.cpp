@@ -89,14 +89,9 @@ void add_feature_options(CLI::App& command, FeatureArguments& arguments) {
 }
 
 void add_low_light_option(CLI::App& command, double& gain) {
-  command
-      .add_option_function<std::vector<double>>(
-          "--low-light",
-          [&gain](const std::vector<double>& given) {
-            gain = given.empty() ? LowLight::kDefaultGain : given.front();
-          },
-          "darken the images first (low-light model, gain 0.12)")
+  command.add_option("--low-light", gain, "darken the images first (low-light model)")
       ->expected(0, 1)
+      ->default_str(fmt::format("{}", LowLight::kDefaultGain))
       ->type_name("[=GAIN]");
 }
 

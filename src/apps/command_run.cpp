@@ -183,13 +183,11 @@ void add_run_command(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--max-frames", settings->max_frames, "Stop after so many frames");
   command
-      ->add_option_function<std::vector<double>>(
-          "--low-light",
-          [settings](const std::vector<double>& gain) {
-            settings->low_light = gain.empty() ? LowLight::kDefaultGain : gain.front();
-          },
-          "Darken the images first (low-light model, gain 0.12)")
+      ->add_option_function<double>(
+          "--low-light", [settings](double gain) { settings->low_light = gain; },
+          "Darken the images first (low-light model)")
       ->expected(0, 1)
+      ->default_str(fmt::format("{}", LowLight::kDefaultGain))
       ->type_name("[=GAIN]");
   command->add_flag("--realtime", settings->realtime,
                     "Feed images at their own pace, dropping late ones");
