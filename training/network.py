@@ -103,6 +103,10 @@ class LocalNet(nn.Module):
         features = self.encoder(normalise(image))
         return self.detector(features), self.descriptor(features), features
 
+    def outputs(self, image: Tensor) -> tuple[Tensor, ...]:
+        """What is shipped: keypoint logits and descriptors."""
+        return self(image)[:2]
+
 
 def fuse(module: nn.Module) -> nn.Module:
     """Copy-free, in-place: folds every RepVGG block and batch normalisation below `module` into convolutions."""

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The matching benchmark: correct mutual nearest neighbours on pairs of frames with depth and pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+import openvino as ov
+from numpy.typing import NDArray
+
+from .data import Frame, lift, load_frame, project
+from .teacher import sample
+
+Array = NDArray[np.float32]
+CORRECT_PIXELS = 8.0
+
+
+@dataclass(frozen=True)
+class Detection:
+    """Post-processing of the detector's output."""
+
+    most: int = 1000
+    radius: int = 4
+    threshold: float = 0.0
+    border: int = 8
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One row of pairs.txt."""
+
+    first: int
+    second: int
+    dark: bool
+
+    @property
+    def block(self) -> str:
+        """Name of the block it counts in."""
+        return "gap 16, low light" if self.dark else f"gap {self.second - self.first}"
+
+
+def read_pairs(path: Path) -> list[Pair]:
+    """All pairs."""
+    return [Pair(int(a), int(b), bool(int(c))) for a, b, c in np.loadtxt(path, dtype=int)]
+
+
+def darken(grey: NDArray[np.uint8], gain: float, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """The project's low-light model: gamma 2.2, gain, 400 photons at full scale, read noise 0.006."""
+    x = gain * (grey / 255.0) ** 2.2
+    x = rng.poisson(x * 400) / 400.0 + rng.normal(0, 0.006, x.shape)
+    return np.clip(x * 255, 0, 255).astype(np.uint8)
+
+
+def compile_model(path: Path, precision: str = "f32", threads: int = 2) -> ov.CompiledModel:
+    """The network on the CPU, without silent bfloat16."""
+    options = {"INFERENCE_NUM_THREADS": threads, "INFERENCE_PRECISION_HINT": precision, "PERFORMANCE_HINT": "LATENCY"}
+    return ov.Core().compile_model(str(path), "CPU", options)
+
+
+class Extractor:
+    """Keypoints and descriptors of a grey image by one of our models, or by an EdgePoint2 file."""
+
+    def __init__(self, model: ov.CompiledModel, detection: Detection = Detection()) -> None:
+        self.model, self.detection = model, detection
+        self.names = [output.any_name for output in model.outputs]
+        self.is_teacher = "score" in self.names
+
+    def scores(self, out: dict[str, Array]) -> Array:
+        """Full-resolution scores."""
+        if self.is_teacher:
+            return out["score"][0, 0]
+        logits = out["keypoint_logits"][0]
+        odds = np.exp(logits - logits.max(0, keepdims=True))
+        cells = odds[:64] / odds.sum(0, keepdims=True)
+        _, h, w = cells.shape
+        return cells.reshape(8, 8, h, w).transpose(2, 0, 3, 1).reshape(8 * h, 8 * w)
+
+    def __call__(self, grey: NDArray[np.uint8]) -> tuple[Array, Array]:
+        """Positions (N,2) and unit descriptors (N,D)."""
+        scale = 255.0 if self.is_teacher else 1.0
+        result = self.model([(grey.astype(np.float32) / scale)[None, None]])
+        out = {name: result[k] for k, name in enumerate(self.names)}
+        d, score = self.detection, self.scores(out)
+        size = 2 * d.radius + 1
+        peaks = (cv2.dilate(score, np.ones((size, size), np.uint8)) == score) & (
+            score > (-5.0 if self.is_teacher else d.threshold)
+        )
+        b = d.border
+        peaks[:b], peaks[-b:], peaks[:, :b], peaks[:, -b:] = False, False, False, False
+        rows, columns = np.nonzero(peaks)
+        order = np.argsort(-score[rows, columns], kind="stable")[: d.most]
+        points = np.column_stack([columns[order], rows[order]]).astype(np.float32)
+        field = out["desc" if self.is_teacher else "descriptors"][0]
+        return points, sample(field, points[:, 0], points[:, 1], grey.shape[0] // field.shape[1])
+
+
+def mutual_matches(first: Array, second: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Index pairs of mutual nearest neighbours."""
+    similarity = first @ second.T
+    forward, backward = similarity.argmax(1), similarity.argmax(0)
+    kept = np.flatnonzero(backward[forward] == np.arange(len(first)))
+    return kept, forward[kept]
+
+
+def correct_matches(a: Frame, b: Frame, first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[int, int]:
+    """Number of correct matches, and of matches whose first keypoint has depth."""
+    i, j = mutual_matches(first[1], second[1])
+    moved, _ = project(b, lift(a, first[0][i]))
+    error = np.linalg.norm(moved - second[0][j], axis=1)
+    known = np.isfinite(lift(a, first[0][i])[:, 0])
+    return int((error <= CORRECT_PIXELS).sum()), int(known.sum())
+
+
+def run_pairs(extractor: Extractor, folder: Path, gain: float = 0.12) -> list[dict]:
+    """Every pair's counts."""
+    rng = np.random.default_rng(0)
+    rows = []
+    for pair in read_pairs(folder / "pairs.txt"):
+        a, b = load_frame(folder, pair.first), load_frame(folder, pair.second)
+        second = darken(b.grey, gain, rng) if pair.dark else b.grey
+        good, known = correct_matches(a, b, extractor(a.grey), extractor(second))
+        rows.append({"block": pair.block, "first": pair.first, "correct": good, "known": known})
+    return rows
