@@ -188,7 +188,7 @@ std::string draw_scale_bar(const View& view) {
 
 std::string draw_legend(const View& view, bool with_truth) {
   std::string out;
-  double x = kLeft + view.width - (with_truth ? 392 : 260);
+  double x = kLeft + view.width - (with_truth ? 366 : 234);
   const double y = kTop - 14;
   const auto line = [&](const char* color, double width, const char* text, double advance) {
     out += fmt::format("<path d=\"M{:.1f} {:.1f}h26\" stroke=\"{}\" stroke-width=\"{}\"/>\n", x,

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -47,10 +47,22 @@ YAML::Node load_opencv_yaml(const std::string& path) {
   }
 }
 
+// Entry `key`, or an empty node where there is none: yaml-cpp throws when asked about missing ones.
+YAML::Node child(const YAML::Node& node, const char* key) {
+  if (!node.IsMap()) return {};
+  const YAML::Node value = node[key];
+  return value ? value : YAML::Node();
+}
+
+std::string scalar_text(const YAML::Node& map, const char* key) {
+  const YAML::Node node = child(map, key);
+  return node.IsScalar() ? node.Scalar() : std::string();
+}
+
 // `count` finite numbers of the "data" list of an OpenCV matrix.
 std::vector<double> matrix_data(const YAML::Node& matrix, std::size_t count,
                                 const std::string& path, const std::string& what) {
-  const YAML::Node data = matrix.IsMap() ? matrix["data"] : YAML::Node();
+  const YAML::Node data = child(matrix, "data");
   std::vector<double> values;
   if (data.IsSequence()) {
     for (const YAML::Node& item : data) {
@@ -63,20 +75,18 @@ std::vector<double> matrix_data(const YAML::Node& matrix, std::size_t count,
 }
 
 double scalar(const YAML::Node& map, const char* key, const std::string& path) {
-  const YAML::Node node = map[key];
-  const auto value = parse_number(node && node.IsScalar() ? node.Scalar() : "");
+  const auto value = parse_number(scalar_text(map, key));
   if (value && std::isfinite(*value)) return *value;
   throw InputError(fmt::format("{}: {} of {} is missing or no number", path, key, kColorFrame));
 }
 
 // Intrinsics of the colour camera: fx cx fy cy, then k1 k2 p1 p2 k3.
 void read_sensors(const std::string& path, Camera& camera) {
-  const YAML::Node root = load_opencv_yaml(path);
-  const YAML::Node sensor = root.IsMap() ? root[kColorFrame] : YAML::Node();
-  if (!sensor || !sensor.IsMap()) {
+  const YAML::Node sensor = child(load_opencv_yaml(path), kColorFrame);
+  if (!sensor.IsMap()) {
     throw InputError(fmt::format("{}: no sensor {} in it", path, kColorFrame));
   }
-  const auto pinhole = matrix_data(sensor["intrinsics"], 4, path, "intrinsics");
+  const auto pinhole = matrix_data(child(sensor, "intrinsics"), 4, path, "intrinsics");
   camera.width = static_cast<int>(std::clamp(scalar(sensor, "width", path), 0.0, 1e6));
   camera.height = static_cast<int>(std::clamp(scalar(sensor, "height", path), 0.0, 1e6));
   camera.fps = scalar(sensor, "fps", path);
@@ -84,9 +94,9 @@ void read_sensors(const std::string& path, Camera& camera) {
   camera.cx = pinhole[1];
   camera.fy = pinhole[2];
   camera.cy = pinhole[3];
-  if (!sensor["distortion_coefficients"]) return;
+  if (child(sensor, "distortion_coefficients").IsNull()) return;
   const auto distortion =
-      matrix_data(sensor["distortion_coefficients"], 5, path, "distortion_coefficients");
+      matrix_data(child(sensor, "distortion_coefficients"), 5, path, "distortion_coefficients");
   camera.k1 = distortion[0];
   camera.k2 = distortion[1];
   camera.p1 = distortion[2];
@@ -94,23 +104,17 @@ void read_sensors(const std::string& path, Camera& camera) {
   camera.k3 = distortion[4];
 }
 
-std::string scalar_text(const YAML::Node& map, const char* key) {
-  const YAML::Node node = map[key];
-  return node && node.IsScalar() ? node.Scalar() : std::string();
-}
-
 std::optional<SE3> read_base_from_color(const std::string& path) {
-  const YAML::Node root = load_opencv_yaml(path);
-  const YAML::Node list = root.IsMap() ? root["trans_matrix"] : YAML::Node();
-  if (!list || !list.IsSequence()) {
+  const YAML::Node list = child(load_opencv_yaml(path), "trans_matrix");
+  if (!list.IsSequence()) {
     throw InputError(fmt::format("{}: no list trans_matrix in it", path));
   }
   for (const YAML::Node& item : list) {
-    if (!item.IsMap() || scalar_text(item, "parent_frame") != kBaseFrame ||
+    if (scalar_text(item, "parent_frame") != kBaseFrame ||
         scalar_text(item, "child_frame") != kColorFrame) {
       continue;
     }
-    const auto data = matrix_data(item["matrix"], 16, path, "matrix of the colour camera");
+    const auto data = matrix_data(child(item, "matrix"), 16, path, "matrix of the colour camera");
     double values[16];
     std::copy(data.begin(), data.end(), values);
     return pose_from_row_major(values, at_line(path, item.Mark().line + 1));

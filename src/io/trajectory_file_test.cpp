@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "io/trajectory_file.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <csignal>
+
+#include "io/atomic_file.h"
+#include "io/test_folder.h"
+
+namespace dxslam {
+namespace {
+
+StampedPose pose_at(double stamp) {
+  return {stamp, SE3::exp((Vector6d() << 1, 2, stamp, 0.1, 0.2, 0.3).finished())};
+}
+
+TEST(TrajectoryFile, ReadsBackWhatWasWritten) {
+  const TestFolder folder;
+  write_trajectory(folder / "t.txt", {pose_at(0.5), pose_at(1.25)});
+  const Trajectory again = read_trajectory(folder / "t.txt");
+  ASSERT_EQ(again.size(), 2U);
+  EXPECT_EQ(again[1].stamp, 1.25);
+  EXPECT_LT(translation_distance(again[1].world_from_camera, pose_at(1.25).world_from_camera),
+            1e-8);
+  EXPECT_LT(rotation_angle(again[1].world_from_camera, pose_at(1.25).world_from_camera), 1e-7);
+}
+
+TEST(TrajectoryFile, RefusesBrokenRowsByLine) {
+  const TestFolder folder;
+  const std::string good = "# head\n1 0 0 0 0 0 0 1\r\n";
+  const auto expect = [&](const std::string& row, const std::vector<std::string>& parts) {
+    folder.write("t.txt", good + row);
+    expect_input_error([&] { read_trajectory(folder / "t.txt"); }, parts);
+  };
+  expect("2 0 0 0 0 0 1\n", {"t.txt:3", "7 columns", "expected 8"});
+  expect("2 0 0 0 0 0 0 1 9\n", {"t.txt:3", "9 columns"});
+  expect("2 0 nan 0 0 0 0 1\n", {"t.txt:3", "ty is 'nan'", "finite"});
+  expect("inf 0 0 0 0 0 0 1\n", {"t.txt:3", "stamp is 'inf'"});
+  expect("2 0 x 0 0 0 0 1\n", {"t.txt:3", "ty is 'x'"});
+  expect("0.5 0 0 0 0 0 0 1\n", {"t.txt:3", "0.500000 after 1.000000", "rising"});
+  expect("2 0 0 0 0 0 0 0\n", {"t.txt:3", "length 0", "expected 1"});
+  expect("2 0 0 0 1 1 0 1", {"t.txt:3", "length 1.73"});
+  expect(std::string("2 0\0 0", 6), {"t.txt:3", "binary"});
+  folder.write("empty.txt", "# nothing\n");
+  expect_input_error([&] { read_trajectory(folder / "empty.txt"); }, {"empty.txt", "no pose"});
+}
+
+TEST(TrajectoryWriter, SurvivesAKill) {
+  const TestFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    TrajectoryWriter writer(folder / "t.txt");
+    for (int i = 0; i < 100; ++i) writer.append(pose_at(i));
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(read_trajectory(folder / "t.txt").size(), 100U);
+}
+
+TEST(TrajectoryWriter, ReportsAFullDisk) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  expect_input_error([] { TrajectoryWriter writer("/dev/full"); }, {"/dev/full", "No space left"});
+  expect_input_error([] { TrajectoryWriter writer("/nowhere/t.txt"); }, {"No such file"});
+}
+
+TEST(AtomicFile, KeepsTheOldFileWhenWritingFails) {
+  const TestFolder folder;
+  write_file_atomically(folder / "f", "old");
+  // A limit on the size of files stands for a full disk.
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1000, 1000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_file_atomically(folder / "f", std::string(5000, 'x'));
+    } catch (const InputError& e) {
+      ::_exit(std::string(e.what()).find("cannot be written") != std::string::npos ? 0 : 2);
+    }
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(folder.read("f"), "old");
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a temporary file was left behind";
+}
+
+TEST(AtomicFile, ReplacesAndNamesWhatFailed) {
+  const TestFolder folder;
+  write_file_atomically(folder / "f", "old");
+  write_file_atomically(folder / "f", "newer");
+  EXPECT_EQ(folder.read("f"), "newer");
+  expect_input_error([&] { write_file_atomically(folder / "no/f", "x"); },
+                     {"no/f", "cannot be written", "No such file"});
+}
+
+}  // namespace
+}  // namespace dxslam
