@@ -10,10 +10,14 @@
 namespace dxslam {
 
 /// Appends the pixels of a full-resolution score map (one channel, column_stride 1) inside `area`
-/// whose value is above `threshold`. With `maxima_only` those that a direct horizontal or vertical
-/// neighbour beats are left out: enough, and much quicker, where non-maximum suppression with a
-/// radius of at least 1 and no further iterations follows.
+/// whose value is above `threshold`.
 void find_candidates(const TensorView& scores, float threshold, const PixelArea& area,
-                     bool maxima_only, std::vector<Candidate>& candidates);
+                     std::vector<Candidate>& candidates);
+
+/// Of these only the maxima of squares of side 2 * radius + 1: the result of find_candidates()
+/// followed by NonMaximumSuppression without further passes, read off the map itself and so much
+/// quicker.
+void find_maxima(const TensorView& scores, float threshold, const PixelArea& area, int radius,
+                 std::vector<Candidate>& candidates);
 
 }  // namespace dxslam

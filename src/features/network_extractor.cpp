@@ -80,25 +80,32 @@ class NetworkExtractor final : public FeatureExtractor {
   }
 
  private:
-  /// Fills candidates_ with scores in the detector's own units.
+  /// Fills candidates_ with the maxima, in the detector's own units of score.
   void find_candidates(const cv::Size& size) {
     candidates_.clear();
     const PixelArea area = input_.area(detector_.border);
-    if (manifest_.keypoint_logits) {
+    const int radius = detector_.nms_radius;
+    if (manifest_.scores && detector_.nms_iterations == 0) {
+      find_maxima(engine_.output(OutputRole::kScores), dense_threshold(), area, radius,
+                  candidates_);
+      return;
+    }
+    if (manifest_.scores) {
+      dxslam::find_candidates(engine_.output(OutputRole::kScores), dense_threshold(), area,
+                              candidates_);
+    } else if (manifest_.keypoint_logits) {
       cells_.find(engine_.output(OutputRole::kKeypointLogits),
                   std::max(detector_.score_threshold, 1e-9), area, candidates_);
-    } else if (manifest_.scores) {
-      const double threshold = detector_.score_threshold;
-      const bool maxima_only = detector_.nms_radius > 0 && detector_.nms_iterations == 0;
-      dxslam::find_candidates(engine_.output(OutputRole::kScores),
-                              detector_.sigmoid ? logit(threshold) : static_cast<float>(threshold),
-                              area, maxima_only, candidates_);
     } else {
       find_descriptor_maxima(engine_.output(OutputRole::kDescriptors), manifest_.descriptor.stride,
                              detector_.score_threshold, area, candidates_);
     }
-    suppression_.run(size.width, size.height, detector_.nms_radius, detector_.nms_iterations,
-                     candidates_);
+    suppression_.run(size.width, size.height, radius, detector_.nms_iterations, candidates_);
+  }
+
+  float dense_threshold() const {
+    return detector_.sigmoid ? logit(detector_.score_threshold)
+                             : static_cast<float>(detector_.score_threshold);
   }
 
   /// Keeps the best; from here on scores are those that keypoints carry.
