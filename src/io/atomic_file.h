@@ -8,7 +8,8 @@
 namespace dxslam {
 
 /// Replaces `path` by a file of these bytes, or leaves it as it was: a temporary file in the same
-/// folder is written, flushed to the disk and renamed. Throws InputError with the reason (missing
+/// folder is written, flushed to the disk and renamed. What is no regular file (a pipe, a terminal,
+/// /dev/stdout) is written to as it is. Throws InputError with the reason (missing
 /// folder, no permission, full disk).
 void write_file_atomically(const std::string& path, std::string_view bytes);
 

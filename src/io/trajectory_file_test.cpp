@@ -2,7 +2,9 @@
 // Copyright 2026 The dxslam authors
 #include "io/trajectory_file.h"
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <csignal>
@@ -90,6 +92,23 @@ TEST(AtomicFile, KeepsTheOldFileWhenWritingFails) {
   EXPECT_EQ(folder.read("f"), "old");
   const std::filesystem::directory_iterator files(folder.path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a temporary file was left behind";
+}
+
+TEST(AtomicFile, WritesThroughLinksAndToDevices) {
+  const TestFolder folder;
+  folder.write("target", "old");
+  std::filesystem::create_symlink("target", folder / "link");
+  write_file_atomically(folder / "link", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(folder.read("target"), "new");
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  write_file_atomically(folder / "pipe", "text");
+  char text[8] = {};
+  EXPECT_EQ(::read(reader, text, sizeof text), 4);
+  ::close(reader);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+  expect_input_error([&] { write_file_atomically(folder.path(), "x"); }, {"cannot be written"});
 }
 
 TEST(AtomicFile, ReplacesAndNamesWhatFailed) {
