@@ -75,10 +75,16 @@ class DistanceSolver {
   /// Calls visit(distances) for each positive solution.
   template <class Visitor>
   void solve(Visitor visit) const {
-    // Two conics through all solutions; the one of larger determinant leads, for a stable cubic.
-    Eigen::Matrix3d d1 = form_[0] * side2_[1] - form_[1] * side2_[0];
-    Eigen::Matrix3d d2 = form_[2] * side2_[1] - form_[1] * side2_[2];
-    if (std::abs(d2.determinant()) < std::abs(d1.determinant())) std::swap(d1, d2);
+    // Two conics through all solutions span a pencil; the cubic for its degenerate members is led
+    // by the determinant of one member, which symmetry can make vanish, but not for all four here.
+    const Eigen::Matrix3d a = (form_[0] * side2_[1] - form_[1] * side2_[0]).normalized();
+    const Eigen::Matrix3d b = (form_[2] * side2_[1] - form_[1] * side2_[2]).normalized();
+    const std::array<Eigen::Matrix3d, 4> members = {b, a, a + b, a - b};
+    const auto d2_at = std::max_element(members.begin(), members.end(), [](auto& x, auto& y) {
+      return std::abs(x.determinant()) < std::abs(y.determinant());
+    });
+    const Eigen::Matrix3d& d2 = *d2_at;
+    const Eigen::Matrix3d& d1 = d2_at == members.begin() + 1 ? members[0] : members[1];
     const double c3 = d2.determinant();
     const double c2 = (adjugate(d2) * d1).trace();
     const double c1 = (adjugate(d1) * d2).trace();
@@ -143,6 +149,12 @@ class DistanceSolver {
 
 }  // namespace
 
+bool spans_plane(const Triangle& points) {
+  const Eigen::Vector3d a = points[1] - points[0];
+  const Eigen::Vector3d b = points[2] - points[0];
+  return a.cross(b).squaredNorm() > kMinSine2 * a.squaredNorm() * b.squaredNorm();
+}
+
 SE3 align_triangles(const Triangle& source, const Triangle& target) {
   const Eigen::Matrix3d rotation = triangle_frame(target) * triangle_frame(source).transpose();
   const Eigen::Quaterniond q(rotation);
@@ -151,10 +163,10 @@ SE3 align_triangles(const Triangle& source, const Triangle& target) {
 
 P3pSolutions solve_p3p(const Triangle& points_in_world, const Triangle& rays) {
   P3pSolutions solutions;
-  const Eigen::Vector3d edge1 = points_in_world[1] - points_in_world[0];
-  const Eigen::Vector3d edge2 = points_in_world[2] - points_in_world[0];
-  const double area2 = edge1.cross(edge2).squaredNorm();
-  if (!(area2 > kMinSine2 * edge1.squaredNorm() * edge2.squaredNorm())) return solutions;
+  if (!spans_plane(points_in_world)) return solutions;
+  for (const Eigen::Vector3d& ray : rays) {
+    if (!(ray.squaredNorm() > 0.0)) return solutions;
+  }
   const Triangle unit = {rays[0].normalized(), rays[1].normalized(), rays[2].normalized()};
   DistanceSolver(points_in_world, unit).solve([&](const Eigen::Vector3d& s) {
     const Triangle in_camera = {s(0) * unit[0], s(1) * unit[1], s(2) * unit[2]};

@@ -85,6 +85,7 @@ class PnpRansac {
                                                   points_[sample[2]]};
     const std::array<Eigen::Vector3d, 3> rays = {rays_[sample[0]], rays_[sample[1]],
                                                  rays_[sample[2]]};
+    if (!spans_plane(world)) return;
     const std::array<double, 3> depth = {depths_[sample[0]], depths_[sample[1]],
                                          depths_[sample[2]]};
     const bool measured = depth[0] > 0.0 && depth[1] > 0.0 && depth[2] > 0.0;
@@ -93,7 +94,7 @@ class PnpRansac {
                                                         depth[2] * rays[2]};
       // A rigid scene keeps lengths: most contaminated samples end here, for next to nothing.
       if (!sides_agree(world, in_camera, depth)) return;
-      offer(align_triangles(world, in_camera));
+      if (spans_plane(in_camera)) offer(align_triangles(world, in_camera));
     }
     const P3pSolutions solutions = solve_p3p(world, rays);
     for (int i = 0; i < solutions.count; ++i) {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <vector>
 
+#include "core/transform_samples.h"
 #include "optimization/bundle_adjustment.h"
 
 namespace dxslam {
@@ -50,14 +50,6 @@ class BundleSceneMaker {
     return scene;
   }
 
-  double uniform(double from, double to) { return from + (to - from) * random_() / 4294967296.0; }
-  /// Sum of uniform numbers: near normal, and the same with every standard library.
-  double normal() {
-    double sum = -6.0;
-    for (int i = 0; i < 12; ++i) sum += uniform(0.0, 1.0);
-    return sum;
-  }
-
  private:
   /// Along an arc of 2 m, looking at a wall and its surroundings 1.5 to 4 m ahead.
   void add_poses(BundleScene& scene) {
@@ -70,19 +62,19 @@ class BundleSceneMaker {
       scene.true_world_from_camera.push_back(truth);
       const bool fixed = i < options_.fixed_poses;
       Vector6d noise;
-      for (int k = 0; k < 6; ++k) noise(k) = options_.pose_noise * normal();
+      for (int k = 0; k < 6; ++k) noise(k) = options_.pose_noise * random_.normal();
       scene.problem.poses.push_back({fixed ? truth : truth * SE3::exp(noise), fixed});
     }
   }
 
   void add_point(BundleScene& scene, int index) {
-    const auto home = static_cast<std::size_t>(uniform(0.0, options_.poses));
-    const Eigen::Vector2d pixel(uniform(0.0, 639.0), uniform(0.0, 479.0));
-    const Eigen::Vector3d truth =
-        scene.true_world_from_camera[home] * scene.camera.unproject(pixel, uniform(1.5, 4.0));
+    const auto home = static_cast<std::size_t>(random_.uniform(0.0, options_.poses));
+    const Eigen::Vector2d pixel(random_.uniform(0.0, 639.0), random_.uniform(0.0, 479.0));
+    const Eigen::Vector3d truth = scene.true_world_from_camera[home] *
+                                  scene.camera.unproject(pixel, random_.uniform(1.5, 4.0));
     scene.true_points.push_back(truth);
     Eigen::Vector3d noise;
-    for (int k = 0; k < 3; ++k) noise(k) = options_.point_noise * normal();
+    for (int k = 0; k < 3; ++k) noise(k) = options_.point_noise * random_.normal();
     scene.problem.points.push_back(truth + noise);
 
     int seen = 0;
@@ -101,19 +93,20 @@ class BundleSceneMaker {
     o.pose = pose;
     o.point = point;
     o.sigma = options_.pixel_noise > 0.0 ? options_.pixel_noise : 1.0;
-    o.pixel = scene.camera.project(p) + options_.pixel_noise * Eigen::Vector2d(normal(), normal());
-    if (uniform(0.0, 1.0) < options_.depth_share) {
-      o.disparity = scene.camera.bf() / p.z() + options_.pixel_noise * normal();
+    o.pixel = scene.camera.project(p) +
+              options_.pixel_noise * Eigen::Vector2d(random_.normal(), random_.normal());
+    if (random_.uniform(0.0, 1.0) < options_.depth_share) {
+      o.disparity = scene.camera.bf() / p.z() + options_.pixel_noise * random_.normal();
     }
-    const bool outlier = uniform(0.0, 1.0) < options_.outlier_share;
-    if (outlier) o.pixel = {uniform(0.0, 639.0), uniform(0.0, 479.0)};
+    const bool outlier = random_.uniform(0.0, 1.0) < options_.outlier_share;
+    if (outlier) o.pixel = {random_.uniform(0.0, 639.0), random_.uniform(0.0, 479.0)};
     scene.problem.observations.push_back(o);
     scene.outlier.push_back(outlier ? 1 : 0);
     return true;
   }
 
   BundleSceneOptions options_;
-  std::mt19937 random_;
+  SampleSource random_;
 };
 
 inline BundleScene make_bundle_scene(const BundleSceneOptions& options) {

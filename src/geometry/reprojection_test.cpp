@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "geometry/reprojection.h"
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include "geometry/geometry_scene.h"
+
+namespace dxslam {
+namespace {
+
+using Jet = ceres::Jet<double, 6>;
+
+/// The same projection again, written for any scalar.
+template <class T>
+Eigen::Matrix<T, 3, 1> project(const Camera& c, const Eigen::Matrix<T, 3, 1>& p) {
+  const T u = c.fx * p.x() / p.z() + c.cx;
+  return {u, c.fy * p.y() / p.z() + c.cy, u - c.fx * c.depth_baseline / p.z()};
+}
+
+class ReprojectionTest : public testing::Test {
+ protected:
+  Eigen::Vector3d sample() {
+    return camera_.unproject(random_pixel(source_), source_.uniform(0.2, 8.0));
+  }
+  Camera camera_ = test_camera();
+  SampleSource source_{1};
+};
+
+TEST_F(ReprojectionTest, ProjectsLikeTheCamera) {
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d p = sample();
+    const Eigen::Vector3d pixel = project_stereo(camera_, p);
+    EXPECT_LT((pixel.head<2>() - camera_.project(p)).norm(), 1e-12);
+    EXPECT_NEAR(pixel.x() - pixel.z(), camera_.bf() / p.z(), 1e-10);
+  }
+}
+
+TEST_F(ReprojectionTest, DerivativeByThePointMatchesAutomaticDifferentiation) {
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d p = sample();
+    const Eigen::Matrix<Jet, 3, 1> jet(Jet(p.x(), 0), Jet(p.y(), 1), Jet(p.z(), 2));
+    const Eigen::Matrix<Jet, 3, 1> result = project(camera_, jet);
+    Eigen::Matrix3d expected;
+    for (int r = 0; r < 3; ++r) expected.row(r) = result(r).v.head<3>();
+    EXPECT_LT((project_stereo_jacobian(camera_, p) - expected).norm(), 1e-10 * expected.norm());
+  }
+}
+
+TEST_F(ReprojectionTest, DerivativeByThePoseMatchesAutomaticDifferentiation) {
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d p = sample();
+    // exp(delta) p to first order, which is all that a derivative at zero sees.
+    const Eigen::Matrix<Jet, 3, 1> rho(Jet(0.0, 0), Jet(0.0, 1), Jet(0.0, 2));
+    const Eigen::Matrix<Jet, 3, 1> phi(Jet(0.0, 3), Jet(0.0, 4), Jet(0.0, 5));
+    const Eigen::Matrix<Jet, 3, 1> fixed = p.cast<Jet>();
+    const Eigen::Matrix<Jet, 3, 1> moved = fixed + phi.cross(fixed) + rho;
+    const Eigen::Matrix<Jet, 3, 1> result = project(camera_, moved);
+    Eigen::Matrix<double, 3, 6> expected;
+    for (int r = 0; r < 3; ++r) expected.row(r) = result(r).v;
+    const Eigen::Matrix<double, 3, 6> jacobian =
+        left_perturbation_jacobian<3>(project_stereo_jacobian(camera_, p), p);
+    EXPECT_LT((jacobian - expected).norm(), 1e-10 * expected.norm());
+  }
+}
+
+TEST_F(ReprojectionTest, DerivativeByThePoseMatchesNumericDifferences) {
+  constexpr double kStep = 1e-6;
+  for (const SE3& pose : sample_poses()) {
+    const Eigen::Vector3d p = sample();
+    const Eigen::Vector3d x = pose.inverse() * p;
+    Eigen::Matrix<double, 3, 6> numeric;
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d d = kStep * Vector6d::Unit(k);
+      numeric.col(k) = (project_stereo(camera_, SE3::exp(d) * pose * x) -
+                        project_stereo(camera_, SE3::exp(-d) * pose * x)) /
+                       (2.0 * kStep);
+    }
+    const Eigen::Matrix<double, 3, 6> jacobian =
+        left_perturbation_jacobian<3>(project_stereo_jacobian(camera_, p), p);
+    EXPECT_LT((jacobian - numeric).norm(), 1e-6 * numeric.norm());
+  }
+}
+
+}  // namespace
+}  // namespace dxslam
