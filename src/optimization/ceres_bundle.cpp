@@ -3,6 +3,7 @@
 //
 // The one file that knows Ceres for bundle adjustment.
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <array>
 #include <cmath>
@@ -95,6 +96,21 @@ class StopCallback final : public ceres::IterationCallback {
 
  private:
   const BundleStage& stage_;
+};
+
+/// Ceres warns through glog, which writes to stderr unless the host program has set it up. Where it
+/// has, its log is left as it is; else the warnings are held back for as long as this lives.
+class QuietLog {
+ public:
+  QuietLog() : level_(FLAGS_minloglevel) {
+    if (!google::IsGoogleLoggingInitialized()) FLAGS_minloglevel = google::GLOG_FATAL;
+  }
+  ~QuietLog() { FLAGS_minloglevel = level_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int level_;
 };
 
 /// Owns all that a ceres::Problem points to. Must be declared before, so that it outlives, the
@@ -192,6 +208,7 @@ BundleStageReport minimise_with_ceres(const BundleStage& stage, BundleState& sta
   StopCallback callback(stage);
   options.callbacks.push_back(&callback);
 
+  const QuietLog quiet;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 

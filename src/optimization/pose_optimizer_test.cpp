@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "optimization/pose_optimizer.h"
+
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "core/options.h"
+#include "geometry/geometry_scene.h"
+
+namespace dxslam {
+namespace {
+
+struct PoseScene {
+  SE3 truth;
+  std::vector<PoseObservation> observations;
+  std::vector<char> outlier;
+};
+
+PoseScene make_scene(SampleSource& source, int n, double outlier_share, double noise) {
+  const Camera camera = test_camera();
+  PoseScene scene;
+  scene.truth = SE3::exp(source.tangent(1.0));
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Vector2d pixel = random_pixel(source);
+    const double depth = source.uniform(0.5, 5.0);
+    PoseObservation o;
+    o.point_in_world = scene.truth * camera.unproject(pixel, depth);
+    o.sigma = source.uniform(0.7, 1.5);
+    const double dx = noise * o.sigma * source.normal();
+    const double dy = noise * o.sigma * source.normal();
+    o.pixel = pixel + Eigen::Vector2d(dx, dy);
+    if (i % 3 != 0) o.disparity = camera.bf() / depth + noise * o.sigma * source.normal();
+    const bool outlier = source.uniform(0.0, 1.0) < outlier_share;
+    if (outlier) o.pixel = random_pixel(source);
+    scene.observations.push_back(o);
+    scene.outlier.push_back(outlier ? 1 : 0);
+  }
+  return scene;
+}
+
+SE3 nearby(SampleSource& source, const SE3& pose, double extent) {
+  return pose * SE3::exp(source.tangent(extent));
+}
+
+/// The same residual for Ceres, by automatic differentiation: angle-axis and translation of
+/// camera_from_world.
+struct OracleResidual {
+  Camera camera;
+  PoseObservation observation;
+
+  template <class T>
+  bool operator()(const T* pose, T* residual) const {
+    const T x[3] = {T(observation.point_in_world.x()), T(observation.point_in_world.y()),
+                    T(observation.point_in_world.z())};
+    T p[3];
+    ceres::AngleAxisRotatePoint(pose, x, p);
+    for (int k = 0; k < 3; ++k) p[k] += pose[3 + k];
+    const T u = camera.fx * p[0] / p[2] + camera.cx;
+    const T v = camera.fy * p[1] / p[2] + camera.cy;
+    residual[0] = (u - observation.pixel.x()) / observation.sigma;
+    residual[1] = (v - observation.pixel.y()) / observation.sigma;
+    residual[2] = T(0.0);
+    if (observation.disparity > 0.0) {
+      const T right = u - camera.bf() / p[2];
+      residual[2] = (right - observation.pixel.x() + observation.disparity) / observation.sigma;
+    }
+    return true;
+  }
+};
+
+SE3 oracle(const SE3& start, const std::vector<PoseObservation>& observations,
+           const std::vector<char>& use, double huber) {
+  const SE3 camera_from_world = start.inverse();
+  double pose[6];
+  Eigen::Map<Eigen::Vector3d>{pose} = so3_log(camera_from_world.rotation());
+  Eigen::Map<Eigen::Vector3d>{pose + 3} = camera_from_world.translation();
+  ceres::Problem problem;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (use[i] == 0) continue;
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<OracleResidual, 3, 6>(
+                                 new OracleResidual{test_camera(), observations[i]}),
+                             huber > 0.0 ? new ceres::HuberLoss(huber) : nullptr, pose);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-16;
+  options.gradient_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-14;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  const Eigen::Vector3d phi = Eigen::Map<const Eigen::Vector3d>(pose);
+  const Eigen::Vector3d t = Eigen::Map<const Eigen::Vector3d>(pose + 3);
+  return SE3(so3_exp(phi), t).inverse();
+}
+
+TEST(PoseOptimizer, RecoversAnExactPose) {
+  SampleSource source(1);
+  for (int i = 0; i < 20; ++i) {
+    const PoseScene scene = make_scene(source, 60, 0.0, 0.0);
+    const PoseReport report =
+        optimize_pose(test_camera(), nearby(source, scene.truth, 0.05), scene.observations, {});
+    ASSERT_TRUE(report.success);
+    EXPECT_EQ(report.inliers, 60);
+    EXPECT_LT(translation_distance(report.world_from_camera, scene.truth), 1e-8);
+    EXPECT_LT(rotation_angle(report.world_from_camera, scene.truth), 1e-8);
+    EXPECT_LT(report.rms_pixels, 1e-5);
+  }
+}
+
+TEST(PoseOptimizer, EndsAtTheLeastSquaresMinimumOfItsInliers) {
+  SampleSource source(2);
+  for (int i = 0; i < 20; ++i) {
+    const PoseScene scene = make_scene(source, 100, 0.2, 1.0);
+    const PoseReport report =
+        optimize_pose(test_camera(), nearby(source, scene.truth, 0.05), scene.observations, {});
+    ASSERT_TRUE(report.success);
+    // The gates are read once more at the end; with many rounds that no longer changes the set.
+    PoseOptimizerOptions settled;
+    settled.rounds = 12;
+    const PoseReport more =
+        optimize_pose(test_camera(), report.world_from_camera, scene.observations, settled);
+    ASSERT_TRUE(more.success);
+    const SE3 expected = oracle(more.world_from_camera, scene.observations, more.inlier, 0.0);
+    EXPECT_LT(translation_distance(more.world_from_camera, expected), 1e-6);
+    EXPECT_LT(rotation_angle(more.world_from_camera, expected), 1e-6);
+    EXPECT_LT(translation_distance(report.world_from_camera, expected), 2e-3);
+  }
+}
+
+TEST(PoseOptimizer, AgreesWithCeresUnderTheKernel) {
+  SampleSource source(3);
+  for (int i = 0; i < 10; ++i) {
+    const PoseScene scene = make_scene(source, 100, 0.2, 1.0);
+    PoseOptimizerOptions options;
+    options.rounds = 1;
+    options.iterations = 100;
+    options.chi2_pixel = options.chi2_depth = 6.5;  // one width of the kernel, as in the oracle
+    const PoseReport report = optimize_pose(test_camera(), nearby(source, scene.truth, 0.05),
+                                            scene.observations, options);
+    ASSERT_TRUE(report.success);
+    const SE3 expected = oracle(scene.truth, scene.observations,
+                                std::vector<char>(scene.observations.size(), 1), std::sqrt(6.5));
+    EXPECT_LT(translation_distance(report.world_from_camera, expected), 1e-4);
+    EXPECT_LT(rotation_angle(report.world_from_camera, expected), 1e-4);
+  }
+}
+
+TEST(PoseOptimizer, SetsOutliersAside) {
+  SampleSource source(4);
+  for (int i = 0; i < 20; ++i) {
+    const PoseScene scene = make_scene(source, 200, 0.4, 0.8);
+    const PoseReport report =
+        optimize_pose(test_camera(), nearby(source, scene.truth, 0.03), scene.observations, {});
+    ASSERT_TRUE(report.success);
+    EXPECT_LT(translation_distance(report.world_from_camera, scene.truth), 0.02);
+    int wrong = 0;
+    int lost = 0;
+    int count = 0;
+    for (std::size_t k = 0; k < scene.outlier.size(); ++k) {
+      count += report.inlier[k];
+      if (report.inlier[k] != 0 && scene.outlier[k] != 0) ++wrong;
+      if (report.inlier[k] == 0 && scene.outlier[k] == 0) ++lost;
+    }
+    EXPECT_EQ(count, report.inliers);
+    EXPECT_LE(wrong, 2);
+    EXPECT_LE(lost, 10);
+  }
+}
+
+TEST(PoseOptimizer, InformationIsTheInverseCovarianceOfThePose) {
+  // Squared Mahalanobis distances of many noisy solutions average to the six degrees of freedom.
+  SampleSource source(5);
+  const PoseScene clean = make_scene(source, 80, 0.0, 0.0);
+  PoseOptimizerOptions options;
+  options.chi2_pixel = options.chi2_depth = 100.0;
+  double sum = 0.0;
+  constexpr int kRounds = 400;
+  for (int i = 0; i < kRounds; ++i) {
+    std::vector<PoseObservation> noisy = clean.observations;
+    for (PoseObservation& o : noisy) {
+      const double nu = o.sigma * source.normal();
+      o.pixel += Eigen::Vector2d(nu, o.sigma * source.normal());
+      // Disparity as measured from u: the noise of the right column is independent of u.
+      if (o.disparity > 0.0) o.disparity += nu - o.sigma * source.normal();
+    }
+    const PoseReport report = optimize_pose(test_camera(), clean.truth, noisy, options);
+    ASSERT_TRUE(report.success);
+    const Vector6d error = (report.world_from_camera.inverse() * clean.truth).log();
+    sum += error.dot(report.information * error);
+    EXPECT_LT((report.information - report.information.transpose()).norm(),
+              1e-12 * report.information.norm());
+  }
+  EXPECT_NEAR(sum / kRounds, 6.0, 0.6);
+}
+
+TEST(PoseOptimizer, UsesDepthWhereThereIsOne) {
+  // Three pixels alone leave depth weak; with disparity the pose of few points is exact.
+  SampleSource source(6);
+  PoseScene scene = make_scene(source, 8, 0.0, 0.0);
+  for (PoseObservation& o : scene.observations) {
+    o.disparity = test_camera().bf() / (scene.truth.inverse() * o.point_in_world).z();
+  }
+  scene.observations[2].disparity *= 3.0;  // right pixel, wrong depth
+  const PoseReport report =
+      optimize_pose(test_camera(), nearby(source, scene.truth, 0.02), scene.observations, {});
+  ASSERT_TRUE(report.success);
+  EXPECT_EQ(report.inlier[2], 0);
+  EXPECT_EQ(report.inliers, 7);
+}
+
+TEST(PoseOptimizer, CountsPointsBehindTheCameraAsOutliers) {
+  SampleSource source(7);
+  PoseScene scene = make_scene(source, 50, 0.0, 0.5);
+  PoseObservation& o = scene.observations[10];
+  o.point_in_world = scene.truth * Eigen::Vector3d(-0.1, 0.1, -1.0);
+  o.pixel = test_camera().project({-0.1, 0.1, -1.0});
+  o.disparity = 0.0;
+  const PoseReport report =
+      optimize_pose(test_camera(), nearby(source, scene.truth, 0.03), scene.observations, {});
+  ASSERT_TRUE(report.success);
+  EXPECT_EQ(report.inlier[10], 0);
+  EXPECT_LT(translation_distance(report.world_from_camera, scene.truth), 0.02);
+}
+
+TEST(PoseOptimizer, SetsValuesThatAreNotFiniteAside) {
+  SampleSource source(8);
+  PoseScene scene = make_scene(source, 50, 0.0, 0.5);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  scene.observations[0].pixel.x() = nan;
+  scene.observations[1].point_in_world.z() = std::numeric_limits<double>::infinity();
+  scene.observations[2].disparity = nan;
+  scene.observations[3].sigma = 0.0;
+  scene.observations[4].sigma = nan;
+  const PoseReport report =
+      optimize_pose(test_camera(), nearby(source, scene.truth, 0.03), scene.observations, {});
+  ASSERT_TRUE(report.success);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(report.inlier[i], 0) << i;
+  EXPECT_TRUE(report.information.allFinite());
+  EXPECT_LT(translation_distance(report.world_from_camera, scene.truth), 0.02);
+}
+
+TEST(PoseOptimizer, KeepsTheStartOnFailure) {
+  SampleSource source(9);
+  const PoseScene scene = make_scene(source, 5, 0.0, 0.0);
+  const SE3 start = nearby(source, scene.truth, 0.1);
+  const PoseReport few = optimize_pose(test_camera(), start, scene.observations, {});
+  EXPECT_FALSE(few.success);
+  EXPECT_EQ(few.world_from_camera.matrix(), start.matrix());
+
+  const PoseReport none = optimize_pose(test_camera(), start, {}, {});
+  EXPECT_FALSE(none.success);
+  EXPECT_EQ(none.world_from_camera.matrix(), start.matrix());
+
+  const SE3 broken(Eigen::Quaterniond::Identity(),
+                   {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
+  EXPECT_FALSE(optimize_pose(test_camera(), broken, scene.observations, {}).success);
+}
+
+TEST(PoseOptimizer, FailsWhenNothingAgrees) {
+  SampleSource source(10);
+  const PoseScene scene = make_scene(source, 60, 1.0, 0.0);
+  PoseOptimizerOptions options;
+  options.min_inliers = 15;
+  EXPECT_FALSE(optimize_pose(test_camera(), scene.truth, scene.observations, options).success);
+}
+
+TEST(PoseOptimizer, GivesTheSameAnswerTwice) {
+  SampleSource source(11);
+  const PoseScene scene = make_scene(source, 100, 0.3, 1.0);
+  const SE3 start = nearby(source, scene.truth, 0.05);
+  const PoseReport a = optimize_pose(test_camera(), start, scene.observations, {});
+  const PoseReport b = optimize_pose(test_camera(), start, scene.observations, {});
+  EXPECT_EQ(a.world_from_camera.matrix(), b.world_from_camera.matrix());
+  EXPECT_EQ(a.information, b.information);
+}
+
+TEST(PoseOptimizer, OptionsHaveValidDefaults) {
+  EXPECT_NO_THROW(validate_options("pose", PoseOptimizerOptions()));
+}
+
+}  // namespace
+}  // namespace dxslam
