@@ -62,6 +62,7 @@ void run_synth(SynthArguments& arguments) {
   for (const std::string& factor : arguments.factors) {
     set_factor(arguments.options.factors, factor);
   }
+  require_usable_folder(arguments.out, arguments.force);
   const SyntheticSequence sequence(arguments.options);
   TumWriterOptions writer;
   writer.overwrite = arguments.force;

@@ -38,11 +38,12 @@ cv::Mat fractal_noise(Random& random, cv::Size size, int cells_x, int cells_y, i
   for (int octave = 0; octave < octaves; ++octave) {
     const int x = std::min(cells_x << octave, size.width);
     const int y = std::min(cells_y << octave, size.height);
-    sum += smooth_field(random, size, x, y) * strength;
+    cv::scaleAdd(smooth_field(random, size, x, y), strength, sum, sum);
     total += strength * strength;
     strength *= gain;
   }
-  return sum * (1.0 / std::sqrt(total));
+  sum.convertTo(sum, CV_32FC1, 1.0 / std::sqrt(total));
+  return sum;
 }
 
 void add_noise(cv::Mat& image, const cv::Mat& noise, double strength) {
@@ -50,7 +51,7 @@ void add_noise(cv::Mat& image, const cv::Mat& noise, double strength) {
     cv::Vec3b* row = image.ptr<cv::Vec3b>(y);
     const float* n = noise.ptr<float>(y);
     for (int x = 0; x < image.cols; ++x) {
-      const int shift = static_cast<int>(std::lround(n[x] * strength));
+      const int shift = cvRound(n[x] * strength);
       for (int c = 0; c < 3; ++c) row[x][c] = cv::saturate_cast<uchar>(row[x][c] + shift);
     }
   }
@@ -78,7 +79,7 @@ cv::Scalar color_of(double hue, double saturation, double value) {
 }
 
 cv::Scalar random_color(Random& random, double min_value, double max_value) {
-  const double hue = random.uniform(), saturation = std::pow(random.uniform(), 0.8) * 0.85;
+  const double hue = random.uniform(), saturation = std::pow(random.uniform(), 0.9) * 0.7;
   return color_of(hue, saturation, random.uniform(min_value, max_value));
 }
 

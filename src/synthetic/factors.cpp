@@ -36,8 +36,8 @@ void change_illumination(Layout& layout, const FactorOptions& factors) {
   const std::vector<Lamp> lamps = layout.lamps;
   const Vector3f common = colored(random, strength);
   for (Lamp& lamp : layout.lamps) {
-    const bool off = random.chance(0.45 * strength);
-    const double power = off ? 0.0 : std::exp(0.8 * strength * random.uniform(-1.0, 1.0));
+    const bool off = random.chance(0.55 * strength);
+    const double power = off ? 0.0 : std::exp(1.2 * strength * random.uniform(-1.0, 1.0));
     lamp.color = lamp.color.cwiseProduct(common).cwiseProduct(colored(random, 0.6 * strength)) *
                  static_cast<float>(power);
   }
@@ -48,7 +48,7 @@ void change_illumination(Layout& layout, const FactorOptions& factors) {
     side.direction = Eigen::Vector3d(std::cos(angle), std::sin(angle), -0.35).normalized();
     side.position.z() = 1.9;
     side.position.head<2>() -= 0.9 * side.direction.head<2>();
-    side.color = colored(random, strength) * static_cast<float>(3.2 * strength);
+    side.color = colored(random, strength) * static_cast<float>(7.0 * strength);
     layout.lamps.push_back(side);
   }
   layout.ambient = layout.ambient.cwiseProduct(colored(random, strength)) *

@@ -203,7 +203,7 @@ void build_decor(Job& job, Pattern pattern, int width, int height) {
   const Skin edge = job.tinted(job.wood(), 0.3, 0.9);
   Skin front = job.fresh(pattern, width, height);
   if (pattern == Pattern::kWindow) {
-    front.emission = 1.4F;
+    front.emission = 0.7F;
     front.tint = {1.1F, 1.0F, 0.95F};
   }
   job.builder.add_box({-w, -job.p.depth, job.p.base}, {w, 0, job.p.base + job.p.height}, edge,

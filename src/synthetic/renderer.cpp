@@ -32,6 +32,17 @@ struct Projected {
   double y_min = 0.0, y_max = 0.0;
 };
 
+// Gamma-encoded value times 16 to linear light.
+using LinearTable = std::array<float, 256 * 16 + 1>;
+
+LinearTable linear_table() {
+  LinearTable table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    table[i] = static_cast<float>(std::pow(static_cast<double>(i) / (255.0 * 16.0), 2.2));
+  }
+  return table;
+}
+
 Linear pixel_function(const Eigen::Vector3d& ray_weights, const Camera& camera, double scale) {
   Linear f;
   f.a = scale * ray_weights.x() / camera.fx;
@@ -121,9 +132,6 @@ class Painter {
     };
     add(world.surfaces, 0);
     add(extra, world.surfaces.size());
-    for (int i = 0; i < 256 * 16 + 1; ++i) {
-      linear_[i] = static_cast<float>(std::pow(i / (255.0 * 16.0), 2.2));
-    }
   }
 
   Rendering paint() {
@@ -235,6 +243,7 @@ class Painter {
 
   cv::Vec3f color_of(int k, double x, double y) const {
     if (k < 0) return {0, 0, 0};
+    static const LinearTable linear = linear_table();
     const Projected& p = visible_[k];
     const Surface& surface = *p.surface;
     const double z = 1.0 / p.inverse_depth.at(x, y);
@@ -255,7 +264,7 @@ class Painter {
     const Eigen::Vector3f light = light_at(surface.light, u, v) * world_.exposure;
     cv::Vec3f color;
     for (int c = 0; c < 3; ++c) {
-      color[c] = linear_[static_cast<int>(bgr[c] * 16.0F + 0.5F)] * light[c];
+      color[c] = linear[static_cast<int>(bgr[c] * 16.0F + 0.5F)] * light[c];
     }
     return color;
   }
@@ -278,8 +287,7 @@ class Painter {
   Camera camera_;
   RenderOptions options_;
   std::vector<Projected> visible_;
-  std::array<float, 256 * 16 + 1> linear_{};  // gamma-encoded value times 16 to linear
-  cv::Mat nearest_;                           // index into visible_
+  cv::Mat nearest_;  // index into visible_
   cv::Mat inverse_depth_;
 };
 

@@ -3,6 +3,7 @@
 #include "synthetic/texture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/error.h"
@@ -15,7 +16,7 @@ constexpr int kMaxTaps = 4;  // samples along the long axis of a pixel's footpri
 bool is_power_of_two(int value) { return value > 0 && (value & (value - 1)) == 0; }
 
 // One byte a channel to one 16-bit lane a channel, in the order B, R, G.
-std::uint64_t spread(std::uint32_t texel) {
+inline std::uint64_t spread(std::uint32_t texel) {
   return (texel & 0xFF00FFU) | (static_cast<std::uint64_t>(texel >> 8 & 0xFFU) << 32);
 }
 
@@ -63,7 +64,8 @@ cv::Vec3f Texture::mean() const {
 }
 
 // The four weights sum to 256, so every lane stays below 2^16 and the result is 8.8 fixed point.
-std::uint64_t Texture::bilinear(const Level& level, float u, float v, bool tiled) {
+[[gnu::always_inline]] inline std::uint64_t Texture::bilinear(const Level& level, float u, float v,
+                                                              bool tiled) {
   float x = u * static_cast<float>(level.width) - 0.5F;
   float y = v * static_cast<float>(level.height) - 0.5F;
   if (!tiled) {
@@ -105,11 +107,11 @@ void Texture::sample(float u, float v, float du_dx, float dv_dx, float du_dy, fl
   minor = std::max(std::sqrt(minor), major / kMaxTaps);
   const int taps = major <= 1.0F ? 1 : std::min(kMaxTaps, static_cast<int>(major / minor + 0.5F));
   const float finest = std::max(minor, 1e-6F);
-  int exponent = 0;
-  const float fraction = std::frexp(finest, &exponent);  // in [0.5, 1)
   // log2 by the exponent and a straight line between powers: smooth, monotone, cheap.
-  const float lod = std::clamp(static_cast<float>(exponent - 1) + (fraction * 2.0F - 1.0F), 0.0F,
-                               static_cast<float>(levels_.size() - 1));
+  const auto bits = std::bit_cast<std::uint32_t>(finest);
+  const float log2 = static_cast<float>(static_cast<int>(bits >> 23) - 127) +
+                     static_cast<float>(bits & 0x7FFFFFU) * 0x1.0p-23F;
+  const float lod = std::clamp(log2, 0.0F, static_cast<float>(levels_.size() - 1));
   const int level = static_cast<int>(lod);
   const float blend = lod - static_cast<float>(level);
   const bool two_levels = blend > 0.004F && level + 1 < static_cast<int>(levels_.size());

@@ -32,7 +32,7 @@ class Texture {
     int width = 0, height = 0;
     std::vector<std::uint32_t> texels;  // B | G << 8 | R << 16
   };
-  static std::uint64_t bilinear(const Level& level, float u, float v, bool tiled);
+  static inline std::uint64_t bilinear(const Level& level, float u, float v, bool tiled);
   std::vector<Level> levels_;
 };
 

@@ -45,16 +45,9 @@ class JsonVisitor {
 };
 
 void prepare_folder(const fs::path& folder, bool overwrite) {
+  require_usable_folder(folder.string(), overwrite);
   std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-    throw InputError(fmt::format("'{}' is a file, expected a folder to write to", folder.string()));
-  }
-  if (fs::is_directory(folder, error) && !fs::is_empty(folder, error)) {
-    if (!overwrite) {
-      throw InputError(fmt::format(
-          "folder '{}' is not empty, expected a new or empty one (--force replaces a recording)",
-          folder.string()));
-    }
+  if (fs::is_directory(folder, error)) {
     // Only what this function writes; anything else in the folder stays.
     for (const char* name : {"rgb.txt", "depth.txt", "groundtruth.txt", "calibration.yaml",
                              "scene.json", "rgb", "depth"}) {
@@ -103,6 +96,20 @@ void write_frame(const RgbdImage& image, const fs::path& folder, double depth_fa
 }
 
 }  // namespace
+
+void require_usable_folder(const std::string& folder, bool overwrite) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(fmt::format("'{}' is a file, expected a folder to write to", folder));
+  }
+  if (!overwrite && !fs::is_empty(folder, error)) {
+    throw InputError(
+        fmt::format("folder '{}' is not empty, expected a new or empty one (--force "
+                    "replaces an earlier recording)",
+                    folder));
+  }
+}
 
 std::string describe_scene(const SyntheticSequence& sequence) {
   JsonVisitor visitor;

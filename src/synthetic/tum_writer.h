@@ -27,6 +27,9 @@ struct TumWriterOptions {
 bool write_tum_sequence(const SyntheticSequence& sequence, const std::string& folder,
                         const TumWriterOptions& options);
 
+/// Throws InputError if write_tum_sequence would refuse the folder. Changes nothing.
+void require_usable_folder(const std::string& folder, bool overwrite);
+
 /// scene.json of a recording.
 std::string describe_scene(const SyntheticSequence& sequence);
 

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "synthetic/tum_writer.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "io/sequence_reader.h"
+#include "synthetic/test_worlds.h"
+
+namespace dxslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TumWriter : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("dxslam_synth_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    options_ = testing_worlds::quiet_room();
+    options_.frames = 5;
+    options_.factors.depth_noise = 1.0;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+  SyntheticOptions options_;
+};
+
+TEST_F(TumWriter, WhatItWritesIsReadBackTheSame) {
+  SyntheticSequence sequence(options_);
+  TumWriterOptions writer;
+  writer.png = true;
+  ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), writer));
+  const auto read = open_sequence(folder_.string());
+  ASSERT_EQ(read->size(), sequence.size());
+  EXPECT_EQ(read->camera().fx, sequence.camera().fx);
+  EXPECT_EQ(read->camera().depth_factor, sequence.camera().depth_factor);
+  ASSERT_EQ(read->ground_truth().size(), sequence.size());
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const auto written = sequence.read(i), found = read->read(i);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->stamp, written->stamp, 1e-6);
+    EXPECT_EQ(cv::norm(found->color, written->color, cv::NORM_INF), 0.0);
+    EXPECT_LT(cv::norm(found->depth, written->depth, cv::NORM_INF), 1e-5);
+    EXPECT_LT(translation_distance(read->ground_truth()[i].world_from_camera,
+                                   sequence.ground_truth()[i].world_from_camera),
+              1e-6);
+  }
+}
+
+TEST_F(TumWriter, JpegIsCloseAndTheSceneIsDescribed) {
+  SyntheticSequence sequence(options_);
+  ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), {}));
+  const auto read = open_sequence(folder_.string());
+  const cv::Mat difference = read->read(2)->color - sequence.read(2)->color;
+  EXPECT_LT(cv::mean(difference)[1], 3.0);
+  const auto scene = nlohmann::json::parse(std::ifstream(folder_ / "scene.json"));
+  EXPECT_EQ(scene["options"]["seed"], 1);
+  EXPECT_EQ(scene["options"]["factors"]["depth_noise"], 1.0);
+  EXPECT_EQ(scene["frames"], 5);
+  EXPECT_NEAR(scene["path_length_m"].get<double>(), sequence.path_length(), 1e-9);
+}
+
+TEST_F(TumWriter, RefusesAFolderWithContentUnlessAskedToReplaceIt) {
+  const SyntheticSequence sequence(options_);
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "notes.md") << "mine";
+  EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), {}), InputError);
+  EXPECT_THROW(require_usable_folder((folder_ / "notes.md").string(), true), InputError);
+  TumWriterOptions writer;
+  writer.overwrite = true;
+  ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), writer));
+  EXPECT_TRUE(fs::exists(folder_ / "notes.md"));
+  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
+}
+
+TEST_F(TumWriter, StopsWhenToldAndLeavesNoLists) {
+  const SyntheticSequence sequence(options_);
+  TumWriterOptions writer;
+  writer.threads = 1;
+  std::size_t calls = 0;
+  writer.progress = [&calls](std::size_t done, std::size_t total) {
+    EXPECT_EQ(done, ++calls);
+    EXPECT_EQ(total, 5U);
+    return done < 2;
+  };
+  EXPECT_FALSE(write_tum_sequence(sequence, folder_.string(), writer));
+  EXPECT_EQ(calls, 2U);
+  EXPECT_FALSE(fs::exists(folder_ / "rgb.txt"));
+}
+
+TEST_F(TumWriter, SaysWhenItCannotWrite) {
+  const SyntheticSequence sequence(options_);
+  EXPECT_THROW(write_tum_sequence(sequence, "/proc/nowhere", {}), InputError);
+}
+
+}  // namespace
+}  // namespace dxslam
