@@ -83,5 +83,33 @@ TEST_F(ReprojectionTest, DerivativeByThePoseMatchesNumericDifferences) {
   }
 }
 
+TEST_F(ReprojectionTest, NormalEquationsAreThoseOfTheJacobians) {
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d p = sample();
+    const Eigen::Vector3d r = source_.vector(3.0);
+    const double weight = source_.uniform(0.1, 2.0);
+    for (const bool depth : {false, true}) {
+      const int rows = depth ? 3 : 2;
+      const Eigen::Matrix3d j = project_stereo_jacobian(camera_, p);
+      const Eigen::MatrixXd by_point = j.topRows(rows);
+      const Eigen::MatrixXd by_pose = left_perturbation_jacobian<3>(j, p).topRows(rows);
+      Eigen::Matrix3d information;
+      Eigen::Vector3d pull;
+      point_information(camera_, p, r, weight, depth, information, pull);
+      const Eigen::Matrix3d expected = weight * by_point.transpose() * by_point;
+      EXPECT_LT((information - expected).norm(), 1e-12 * expected.norm());
+      EXPECT_LT((pull - weight * by_point.transpose() * r.head(rows)).norm(), 1e-9);
+
+      Matrix6d hessian = Matrix6d::Zero();
+      Vector6d gradient = Vector6d::Zero();
+      add_left_perturbation(information, pull, p, hessian, gradient);
+      const Matrix6d lower = hessian.selfadjointView<Eigen::Lower>();
+      const Matrix6d full = weight * by_pose.transpose() * by_pose;
+      EXPECT_LT((lower - full).norm(), 1e-12 * full.norm());
+      EXPECT_LT((gradient - weight * by_pose.transpose() * r.head(rows)).norm(), 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dxslam

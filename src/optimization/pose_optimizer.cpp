@@ -14,11 +14,11 @@ namespace {
 constexpr double kInitialDamping = 1e-5;  // share of the diagonal of the normal equations
 constexpr double kMaxDamping = 1e6;       // beyond it no step can help any more
 constexpr double kSmallStep2 = 1e-16;     // squared norm of a step in metres and radians
-constexpr double kSmallDecrease = 1e-9;   // share of the cost
+constexpr double kSmallDecrease = 1e-6;   // share of the cost
 
 /// Normal equations and cost of all observations in use.
 struct System {
-  Matrix6d hessian;
+  Matrix6d hessian;  // lower triangle
   Vector6d gradient;
   double cost = 0.0;
 };
@@ -112,12 +112,10 @@ class Problem {
     } else {
       system.cost += error2;
     }
-    Eigen::Matrix3d by_point = project_stereo_jacobian(camera_, point);
-    if (!(o.disparity > 0.0)) by_point.row(2).setZero();
-    const Eigen::Matrix<double, 3, 6> jacobian = left_perturbation_jacobian<3>(by_point, point);
-    const Eigen::Matrix<double, 3, 6> weighted = weight * jacobian;
-    system.hessian.noalias() += jacobian.transpose() * weighted;
-    system.gradient.noalias() += weighted.transpose() * r;
+    Eigen::Matrix3d by_point;
+    Eigen::Vector3d pull;
+    point_information(camera_, point, r, weight, o.disparity > 0.0, by_point, pull);
+    add_left_perturbation(by_point, pull, point, system.hessian, system.gradient);
   }
 
   const Camera& camera_;
@@ -137,7 +135,7 @@ void minimise(const Problem& problem, const std::vector<char>& mask, bool robust
   for (int i = 0; i < iterations && damping < kMaxDamping; ++i) {
     Matrix6d damped = current.hessian;
     damped.diagonal() += damping * current.hessian.diagonal();
-    const Vector6d step = damped.ldlt().solve(-current.gradient);
+    const Vector6d step = damped.selfadjointView<Eigen::Lower>().ldlt().solve(-current.gradient);
     if (!step.allFinite()) return;
     const SE3 candidate = SE3::exp(step) * camera_from_world;
     problem.linearise(candidate, mask, robust, trial);
@@ -185,7 +183,7 @@ PoseReport optimize_pose(const Camera& camera, const SE3& world_from_camera,
 
   System system;
   problem.linearise(camera_from_world, mask, false, system);
-  report.information = system.hessian;
+  report.information = system.hessian.selfadjointView<Eigen::Lower>();
   report.rms_pixels = problem.rms_pixels(camera_from_world, mask, report.inliers);
   report.world_from_camera = camera_from_world.inverse();
   report.success = true;

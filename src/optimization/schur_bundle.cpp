@@ -220,10 +220,12 @@ class SchurSolver {
     const double cost = kernel(o, residual.squaredNorm(), weight);
 
     // The information of the point in the camera frame carries over to pose and point alike.
-    const Eigen::Matrix3d by_camera = bundle_jacobian(*stage_.camera, o, p);
-    const Eigen::Matrix3d weighted = weight * by_camera;
-    const Eigen::Vector3d pull = weighted.transpose() * residual;
-    const Eigen::Matrix3d information = weighted.transpose() * by_camera;
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+    if (p.z() > kMinProjectionDepth) {
+      point_information(*stage_.camera, p, o.sigma * residual, weight / (o.sigma * o.sigma),
+                        has_depth(o), information, pull);
+    }
     const Eigen::Matrix3d& rotation = rotations_[static_cast<std::size_t>(link.pose)];
     const Eigen::Matrix3d turned = information * rotation;
     block.hessian.noalias() += rotation.transpose() * turned;
@@ -231,15 +233,9 @@ class SchurSolver {
     if (link.slot < 0) return cost;
 
     PoseBlock& pose = poses_[static_cast<std::size_t>(link.slot)];
-    const Eigen::Matrix3d lever = skew(p);
-    const Eigen::Matrix3d moment = lever * information;
-    pose.hessian.topLeftCorner<3, 3>() += information;
-    pose.hessian.bottomLeftCorner<3, 3>() += moment;
-    pose.hessian.bottomRightCorner<3, 3>().noalias() -= moment * lever;
-    pose.gradient.head<3>() += pull;
-    pose.gradient.tail<3>() += p.cross(pull);
+    add_left_perturbation(information, pull, p, pose.hessian, pose.gradient);
     cross_[k].topRows<3>() = turned;
-    cross_[k].bottomRows<3>().noalias() = lever * turned;
+    for (int c = 0; c < 3; ++c) cross_[k].col(c).tail<3>() = p.cross(turned.col(c));
     return cost;
   }
 
