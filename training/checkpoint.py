@@ -9,15 +9,22 @@ from pathlib import Path
 import torch
 from torch import nn
 
+from .global_head import GlobalConfig, HfNet
 from .network import LocalNet, NetworkConfig
 
 
 def load_network(path: Path) -> nn.Module:
     """The network of a checkpoint with its running-mean weights."""
     saved = torch.load(path, weights_only=True)
-    network = LocalNet(NetworkConfig(**saved["network"]))
-    network.load_state_dict(saved["ema"])
-    return network
+    config = NetworkConfig(**saved["network"])
+    if "head" not in saved:
+        network = LocalNet(config)
+        network.load_state_dict(saved["ema"])
+        return network
+    whole = HfNet(config, GlobalConfig(**saved["head_config"]))
+    whole.local.load_state_dict(saved["ema"])
+    whole.head.load_state_dict(saved["head"])
+    return whole
 
 
 def main() -> None:

@@ -15,7 +15,9 @@ import numpy as np
 
 from .data import LAST_TRAINING_FRAME
 from .matching import Detection, Extractor, compile_model, run_pairs
+from .recall import run_recall
 
+REDKITCHEN = "7scenes_redkitchen"
 Table = dict[str, dict[str, dict[str, float]]]
 
 
@@ -51,12 +53,17 @@ def main() -> None:
     p.add_argument("--gain", type=float, default=0.12, help="of the low light")
     a = p.parse_args()
     table: Table = {}
+    places: dict[str, dict[str, float]] = {}
     for path in a.models:
-        extractor = Extractor(compile_model(path), Detection(radius=a.radius))
-        table[path.stem] = summarise(run_pairs(extractor, a.data / "7scenes_redkitchen", a.gain))
+        model = compile_model(path)
+        extractor = Extractor(model, Detection(radius=a.radius))
+        table[path.stem] = summarise(run_pairs(extractor, a.data / REDKITCHEN, a.gain))
         print(markdown({path.stem: table[path.stem]}), flush=True)
+        if "global_descriptor" in extractor.names:
+            places[path.stem] = run_recall(model, a.data / REDKITCHEN, a.gain)
+            print(path.stem, places[path.stem], flush=True)
     if a.out:
-        a.out.write_text(json.dumps(table, indent=1) + "\n")
+        a.out.write_text(json.dumps({"matches": table, "places": places}, indent=1) + "\n")
         a.out.with_suffix(".md").write_text(markdown(table))
 
 

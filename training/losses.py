@@ -47,9 +47,7 @@ def contrast(one: Tensor, other: Tensor, position: Tensor, valid: Tensor, option
     return ((loss * valid).sum(1) / count).mean()
 
 
-def local_losses(
-    logits: Tensor, maps: Tensor, batch: dict[str, Tensor], options: LossOptions
-) -> dict[str, Tensor]:
+def local_losses(logits: Tensor, maps: Tensor, batch: dict[str, Tensor], options: LossOptions) -> dict[str, Tensor]:
     """The four terms, unweighted. Images are interleaved: 2k and 2k+1 are the two views of pair k."""
     weight = torch.full((CELL * CELL + 1,), options.positive)
     weight[-1] = 1.0

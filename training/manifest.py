@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the manifest of an exported model: files, hashes, and how its outputs are read.
 
-python -m training.manifest models/hfnet --run NAME --step N
+python -m training.manifest models/hfnet --run NAME --checkpoint-step N
 """
 
 from __future__ import annotations
@@ -85,9 +85,9 @@ def main() -> None:
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("folder", type=Path)
     p.add_argument("--run", required=True)
-    p.add_argument("--step", type=int, required=True)
+    p.add_argument("--checkpoint-step", type=int, required=True)
     a = p.parse_args()
-    (a.folder / "manifest.yaml").write_text(manifest(a.folder, a.run, a.step))
+    (a.folder / "manifest.yaml").write_text(manifest(a.folder, a.run, a.checkpoint_step))
 
 
 if __name__ == "__main__":
