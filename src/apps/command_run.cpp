@@ -40,6 +40,7 @@ SystemOptions load_system_options(const RunSettings& settings) {
   SystemOptions options;
   if (!settings.config.empty()) options = load_options(settings.config, options);
   if (!settings.features.empty()) options.features = settings.features;
+  if (options.features == "auto") options.features = default_extractor();
   options.deterministic = options.deterministic || settings.deterministic;
   options.extractor.deterministic = options.extractor.deterministic || options.deterministic;
   validate_options("", options);
