@@ -9,7 +9,6 @@ struct Candidate {
   int x = 0;
   int y = 0;
   float score = 0.0F;  ///< larger is better; of any sign
-  int index = 0;       ///< for the caller's own use
 };
 
 /// Half-open rectangle of pixels.

@@ -3,6 +3,7 @@
 #include "features/network_input.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "features/grey_image.h"
@@ -48,7 +49,18 @@ const cv::Mat& NetworkInput::prepare(const cv::Mat& image) {
   } else {
     prepared_ = channels_.isContinuous() ? channels_ : channels_.clone();
   }
+  if (description_.instance_normalized) normalize();
   return prepared_;
+}
+
+void NetworkInput::normalize() {
+  constexpr double kSmallestVariance = 1e-5;
+  cv::Scalar mean;
+  cv::Scalar deviation;
+  cv::meanStdDev(prepared_.reshape(1), mean, deviation);
+  const double scale = 1.0 / std::sqrt(deviation[0] * deviation[0] + kSmallestVariance);
+  prepared_.convertTo(normalized_, CV_32F, scale, -mean[0] * scale);
+  prepared_ = normalized_;
 }
 
 PixelArea NetworkInput::area(int border) const {

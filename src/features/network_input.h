@@ -30,6 +30,8 @@ class NetworkInput {
 
  private:
   void set_channels(const cv::Mat& image);
+  /// To zero mean and unit deviation, by sums that do not depend on the number of threads.
+  void normalize();
 
   InputDescription description_;
   cv::Size content_;  // of the image within the prepared image
@@ -37,6 +39,7 @@ class NetworkInput {
   float scale_y_ = 1.0F;
   cv::Mat channels_;
   cv::Mat sized_;
+  cv::Mat normalized_;
   cv::Mat prepared_;
 };
 

@@ -10,8 +10,6 @@
 #include <map>
 #include <mutex>
 #include <openvino/frontend/manager.hpp>
-#include <openvino/op/constant.hpp>
-#include <openvino/op/mvn.hpp>
 #include <openvino/openvino.hpp>
 #include <optional>
 #include <sstream>
@@ -87,45 +85,55 @@ std::string list_names(const Ports& ports) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-bool is_tensorflow(const std::string& path) {
-  return fs::is_directory(path) || fs::path(path).extension() == ".pb";
+/// Name of OpenVINO's front end for a file. Trying all of them, as ov::Core does, would let some
+/// print on stderr.
+std::string front_end_of(const std::string& path) {
+  const std::string extension = fs::path(path).extension().string();
+  if (extension == ".xml") return "ir";
+  if (extension == ".onnx") return "onnx";
+  if (extension == ".pb" || fs::is_directory(path)) return "tf";
+  throw InputError(
+      fmt::format("{}: found extension `{}`, expected a model (OpenVINO .xml, .onnx, "
+                  "or TensorFlow .pb or saved-model folder)",
+                  path, extension));
 }
 
 /// TensorFlow graphs are cut before conversion, as some operations behind the cut (the resampler
 /// of the published HF-Net) cannot be converted.
-std::shared_ptr<ov::Model> read_tensorflow(const std::string& path,
-                                           const std::vector<std::string>& outputs) {
-  ov::frontend::FrontEndManager manager;
-  const auto front_end = manager.load_by_framework("tf");
-  const auto graph = front_end->load(path);
+void cut(ov::frontend::InputModel& graph, const std::vector<std::string>& outputs,
+         const std::string& path) {
   std::vector<ov::frontend::Place::Ptr> places;
   for (const std::string& name : outputs) {
-    auto place = graph->get_place_by_tensor_name(name);
-    if (!place) place = graph->get_place_by_tensor_name(name + ":0");
-    if (!place) place = graph->get_place_by_operation_name(name);
+    auto place = graph.get_place_by_tensor_name(name);
+    if (!place) place = graph.get_place_by_tensor_name(name + ":0");
+    if (!place) place = graph.get_place_by_operation_name(name);
     if (!place) {
-      throw InputError(
-          fmt::format("{}: found no tensor named {}, expected it as an output of the "
-                      "TensorFlow graph",
-                      path, name));
+      throw InputError(fmt::format(
+          "{}: found no tensor named {}, expected it as an output of the TensorFlow graph", path,
+          name));
     }
     places.push_back(place);
   }
-  graph->override_all_outputs(places);
-  return front_end->convert(graph);
+  graph.override_all_outputs(places);
 }
 
-std::shared_ptr<ov::Model> read_model(ov::Core& core, const ModelFile& file,
+std::shared_ptr<ov::Model> read_model(const ModelFile& file,
                                       const std::vector<std::string>& outputs) {
   verify_model_file(file);
+  const std::string kind = front_end_of(file.path);
   try {
-    return is_tensorflow(file.path) ? read_tensorflow(file.path, outputs)
-                                    : core.read_model(file.path);
-  } catch (const ov::Exception& e) {
-    throw InputError(
-        fmt::format("{}: cannot be read as a model, it is damaged or of a kind that "
-                    "OpenVINO does not know: {}",
-                    file.path, short_reason(e)));
+    ov::frontend::FrontEndManager manager;
+    const auto front_end = manager.load_by_framework(kind);
+    const auto graph = front_end->load(file.path);
+    if (!graph) throw std::runtime_error("not a model");
+    if (kind == "tf") cut(*graph, outputs, file.path);
+    return front_end->convert(graph);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw InputError(fmt::format(
+        "{}: cannot be read as a model, it is damaged or has parts that OpenVINO does not know: {}",
+        file.path, short_reason(e)));
   }
 }
 
@@ -213,9 +221,14 @@ std::vector<float> in_pixel_units(const std::vector<double>& values, double scal
   return result;
 }
 
+/// Images normalised one by one come as floats.
+ov::element::Type input_type(const InputDescription& input) {
+  return input.instance_normalized ? ov::element::f32 : ov::element::u8;
+}
+
 void add_preprocessing(ov::preprocess::PrePostProcessor& steps, const InputDescription& input) {
   auto& port = steps.input(0);
-  port.tensor().set_element_type(ov::element::u8).set_layout("NHWC");
+  port.tensor().set_element_type(input_type(input)).set_layout("NHWC");
   port.model().set_layout(input.layout == TensorLayout::kNchw ? "NCHW" : "NHWC");
   auto& chain = port.preprocess();
   if (input.channels == 3) {
@@ -228,14 +241,6 @@ void add_preprocessing(ov::preprocess::PrePostProcessor& steps, const InputDescr
     chain.scale(in_pixel_units(input.deviation, input.scale));
   } else if (input.scale != 1.0) {
     chain.scale(static_cast<float>(1.0 / input.scale));
-  }
-  if (input.instance_normalized) {
-    chain.custom([](const ov::Output<ov::Node>& image) {
-      const auto axes = ov::op::v0::Constant::create(ov::element::i64, ov::Shape{3}, {1, 2, 3});
-      return std::make_shared<ov::op::v6::MVN>(image, axes, true, 1e-5F,
-                                               ov::op::MVNEpsMode::INSIDE_SQRT)
-          ->output(0);
-    });
   }
 }
 
@@ -333,7 +338,7 @@ class OpenVinoEngine::Impl {
     if (manifest_.global_head) {
       const ModelFile& head_file = pick(manifest_.global_head->files);
       head_path_ = head_file.path;
-      const auto head = read_model(*core_, head_file, {manifest_.global_head->output});
+      const auto head = read_model(head_file, {manifest_.global_head->output});
       head_ = keep_outputs(*head, {head_spec()}, head_path_);
       check_head_input();
     }
@@ -343,9 +348,10 @@ class OpenVinoEngine::Impl {
   }
 
   void run(const cv::Mat& image, bool with_global) {
-    require(image.isContinuous() && image.depth() == CV_8U &&
+    const int depth = manifest_.input.instance_normalized ? CV_32F : CV_8U;
+    require(image.isContinuous() && image.depth() == depth &&
                 image.channels() == manifest_.input.channels,
-            "OpenVinoEngine::run wants a continuous 8-bit image of the network's channels");
+            "OpenVinoEngine::run wants a continuous image of the network's depth and channels");
     Compiled& compiled = prepare(image.cols, image.rows);
     const bool full = with_global && full_;
     if (full && !compiled.full) {
@@ -355,7 +361,7 @@ class OpenVinoEngine::Impl {
     const ov::Shape shape{1, static_cast<std::size_t>(image.rows),
                           static_cast<std::size_t>(image.cols),
                           static_cast<std::size_t>(image.channels())};
-    current_->set_input_tensor(ov::Tensor(ov::element::u8, shape, image.data));
+    current_->set_input_tensor(ov::Tensor(input_type(manifest_.input), shape, image.data));
     infer(*current_, path_);
     global_.clear();
     if (with_global && head_) {
@@ -400,7 +406,7 @@ class OpenVinoEngine::Impl {
     std::vector<std::string> names;
     for (const OutputSpec& spec : with_features()) names.push_back(spec.name);
     if (manifest_.global) names.push_back(manifest_.global->name);
-    return read_model(*core_, file, names);
+    return read_model(file, names);
   }
 
   /// The local outputs and, for a separate global head, what that reads.

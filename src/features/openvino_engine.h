@@ -26,8 +26,9 @@ class OpenVinoEngine {
   OpenVinoEngine(const ModelManifest& manifest, const ExtractorOptions& options);
   ~OpenVinoEngine();
 
-  /// `image` is continuous CV_8U with the manifest's number of channels (BGR where three), of the
-  /// fixed size or multiples of size_multiple. The part that makes the global descriptor runs only
+  /// `image` is what NetworkInput makes: continuous, CV_8U (CV_32F where the manifest normalises
+  /// each image), with the manifest's number of channels (BGR where three), of the fixed size or
+  /// multiples of size_multiple. The part that makes the global descriptor runs only
   /// `with_global`. The first image of a size compiles the network for it.
   void run(const cv::Mat& image, bool with_global);
 

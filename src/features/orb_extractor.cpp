@@ -3,9 +3,11 @@
 #include "features/orb_extractor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "features/grey_image.h"
 #include "features/keypoint_selection.h"
@@ -17,19 +19,19 @@ namespace {
 constexpr int kFeatures = 1000;
 constexpr int kLevels = 8;
 constexpr double kScaleFactor = 1.2;
-constexpr int kEdge = 31;
 constexpr int kPatch = 31;
-constexpr int kDefaultFastThreshold = 20;
-/// For spreading: a low threshold finds corners in dull places, and there is more to choose from.
+constexpr int kOpenCvEdge = 31;
+constexpr int kOpenCvFastThreshold = 20;
+/// For spreading: a low threshold finds corners in dull and dark places.
 constexpr int kLowFastThreshold = 7;
-constexpr int kChoice = 4;  // candidates a keypoint
-constexpr double kSpread = 0.5;
+constexpr int kEdge = 19;  // pixels of a level; the patch of a descriptor must fit
+constexpr double kSpread = 0.25;
 constexpr int kSpreadCell = 40;
 constexpr float kMaxDistance = 64.0F;
 
-cv::Ptr<cv::ORB> create(int count, int fast_threshold) {
-  return cv::ORB::create(count, static_cast<float>(kScaleFactor), kLevels, kEdge, 0, 2,
-                         cv::ORB::HARRIS_SCORE, kPatch, fast_threshold);
+cv::Ptr<cv::ORB> create(int count, int edge) {
+  return cv::ORB::create(count, static_cast<float>(kScaleFactor), kLevels, edge, 0, 2,
+                         cv::ORB::HARRIS_SCORE, kPatch, kOpenCvFastThreshold);
 }
 
 /// Features by falling score, with their descriptors.
@@ -67,7 +69,7 @@ int feature_count(const ExtractorOptions& options) {
 class OpenCvOrbExtractor final : public FeatureExtractor {
  public:
   explicit OpenCvOrbExtractor(const ExtractorOptions& options)
-      : orb_(create(feature_count(options), kDefaultFastThreshold)) {}
+      : orb_(create(feature_count(options), kOpenCvEdge)) {}
 
   const std::string& name() const override { return name_; }
   const DescriptorTraits& traits() const override { return traits_; }
@@ -92,12 +94,40 @@ class OpenCvOrbExtractor final : public FeatureExtractor {
   StageTimer timer_;
 };
 
+/// Direction from a pixel to the centroid of brightness in the disc around it, degrees: the
+/// orientation of an ORB feature.
+float orientation(const cv::Mat& image, int x, int y) {
+  constexpr int kRadius = kPatch / 2;
+  static const std::array<int, kRadius + 1> kHalfWidths = [] {
+    std::array<int, kRadius + 1> widths{};
+    for (int dy = 0; dy <= kRadius; ++dy) {
+      widths[static_cast<std::size_t>(dy)] =
+          cvRound(std::sqrt(static_cast<double>(kRadius * kRadius - dy * dy)));
+    }
+    return widths;
+  }();
+  int moment_x = 0;
+  int moment_y = 0;
+  for (int dy = -kRadius; dy <= kRadius; ++dy) {
+    const std::uint8_t* row = image.ptr<std::uint8_t>(y + dy) + x;
+    const int half = kHalfWidths[static_cast<std::size_t>(std::abs(dy))];
+    int sum = 0;
+    for (int dx = -half; dx <= half; ++dx) {
+      sum += row[dx];
+      moment_x += dx * row[dx];
+    }
+    moment_y += dy * sum;
+  }
+  return cv::fastAtan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
+}
+
 class OrbExtractor final : public FeatureExtractor {
  public:
   explicit OrbExtractor(const ExtractorOptions& options)
       : count_(feature_count(options)),
         spread_(options.spread >= 0.0 ? options.spread : kSpread),
-        orb_(create(kChoice * count_, kLowFastThreshold)) {}
+        orb_(create(count_, kEdge)),
+        fast_(cv::FastFeatureDetector::create(kLowFastThreshold)) {}
 
   const std::string& name() const override { return name_; }
   const DescriptorTraits& traits() const override { return traits_; }
@@ -107,9 +137,7 @@ class OrbExtractor final : public FeatureExtractor {
     timer_.start();
     const cv::Mat grey = to_grey(image);
     timer_.stop("preprocess");
-    std::vector<cv::KeyPoint> keypoints;
-    orb_->detect(grey, keypoints);
-    keypoints = spread(keypoints, grey.size());
+    std::vector<cv::KeyPoint> keypoints = detect(grey);
     timer_.stop("detect");
     cv::Mat descriptors;
     orb_->compute(grey, keypoints, descriptors);
@@ -119,33 +147,51 @@ class OrbExtractor final : public FeatureExtractor {
   }
 
  private:
-  /// Each level gets its share, falling with the scale; what a level cannot use goes to the next
-  /// finer one.
-  std::vector<cv::KeyPoint> spread(const std::vector<cv::KeyPoint>& keypoints,
-                                   const cv::Size& size) const {
-    std::vector<std::vector<Candidate>> levels(kLevels);
-    for (std::size_t i = 0; i < keypoints.size(); ++i) {
-      const cv::KeyPoint& k = keypoints[i];
-      levels[static_cast<std::size_t>(k.octave)].push_back(
-          {cvRound(k.pt.x), cvRound(k.pt.y), k.response, static_cast<int>(i)});
+  void build_pyramid(const cv::Mat& grey) {
+    pyramid_.resize(kLevels);
+    pyramid_[0] = grey;
+    for (std::size_t level = 1; level < pyramid_.size(); ++level) {
+      const double scale = std::pow(kScaleFactor, static_cast<double>(level));
+      cv::resize(pyramid_[level - 1], pyramid_[level],
+                 {cvRound(grey.cols / scale), cvRound(grey.rows / scale)}, 0, 0,
+                 cv::INTER_LINEAR_EXACT);
     }
-    std::vector<cv::KeyPoint> chosen;
-    int left = count_;
+  }
+
+  /// From the coarsest level on, each gets its share of what is left, falling with the scale; so
+  /// what a level cannot use goes to the finer ones.
+  std::vector<cv::KeyPoint> detect(const cv::Mat& grey) {
+    build_pyramid(grey);
+    std::vector<cv::KeyPoint> keypoints;
+    constexpr double kRatio = 1.0 / kScaleFactor;
     for (int level = kLevels - 1; level >= 0; --level) {
-      // Of what is left for this level and the finer ones: 1, r, r^2, ... with r = 1/scale.
-      const double ratio = 1.0 / kScaleFactor;
+      // Shares of this level and the finer ones: 1, r, r^2, ... with r = 1/scale.
       const double share =
-          std::pow(ratio, level) * (1.0 - ratio) / (1.0 - std::pow(ratio, level + 1));
-      auto& candidates = levels[static_cast<std::size_t>(level)];
-      select_keypoints(size.width, size.height, static_cast<int>(std::lround(left * share)),
-                       spread_, kSpreadCell, candidates);
-      for (const Candidate& c : candidates) {
-        chosen.push_back(keypoints[static_cast<std::size_t>(c.index)]);
-      }
-      left -= static_cast<int>(candidates.size());
+          std::pow(kRatio, level) * (1.0 - kRatio) / (1.0 - std::pow(kRatio, level + 1));
+      const int left = count_ - static_cast<int>(keypoints.size());
+      detect_level(level, static_cast<int>(std::lround(left * share)), keypoints);
     }
-    std::reverse(chosen.begin(), chosen.end());
-    return chosen;
+    return keypoints;
+  }
+
+  void detect_level(int level, int count, std::vector<cv::KeyPoint>& keypoints) {
+    const cv::Mat& image = pyramid_[static_cast<std::size_t>(level)];
+    const cv::Rect inside(kEdge, kEdge, image.cols - 2 * kEdge, image.rows - 2 * kEdge);
+    if (inside.width < 8 || inside.height < 8) return;
+    corners_.clear();
+    fast_->detect(image(inside), corners_);
+    candidates_.clear();
+    for (const cv::KeyPoint& corner : corners_) {
+      candidates_.push_back({cvRound(corner.pt.x), cvRound(corner.pt.y), corner.response});
+    }
+    select_keypoints(inside.width, inside.height, count, spread_, kSpreadCell, candidates_);
+    const auto scale = static_cast<float>(std::pow(kScaleFactor, level));
+    for (const Candidate& c : candidates_) {
+      const int x = c.x + kEdge;
+      const int y = c.y + kEdge;
+      keypoints.emplace_back(static_cast<float>(x) * scale, static_cast<float>(y) * scale,
+                             kPatch * scale, orientation(image, x, y), c.score, level);
+    }
   }
 
   std::string name_ = "orb";
@@ -153,6 +199,10 @@ class OrbExtractor final : public FeatureExtractor {
   int count_;
   double spread_;
   cv::Ptr<cv::ORB> orb_;
+  cv::Ptr<cv::FastFeatureDetector> fast_;
+  std::vector<cv::Mat> pyramid_;
+  std::vector<cv::KeyPoint> corners_;
+  std::vector<Candidate> candidates_;
   StageTimer timer_;
 };
 

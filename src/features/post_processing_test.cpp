@@ -181,7 +181,7 @@ std::vector<Candidate> random_candidates(Random& random, int width, int height, 
     for (int x = 0; x < width; ++x) {
       if (uniform(random) > density) continue;
       const double score = std::floor(uniform(random) * distinct_scores) / distinct_scores;
-      candidates.push_back({x, y, static_cast<float>(score) - 0.7F, 0});
+      candidates.push_back({x, y, static_cast<float>(score) - 0.7F});
     }
   }
   return candidates;
@@ -227,9 +227,9 @@ TEST(NonMaximumSuppression, WithManyPassesLeavesNoTwoNearAndNothingToAdd) {
 
 TEST(NonMaximumSuppression, LeavesItsMapCleanForTheNextImage) {
   NonMaximumSuppression suppression;
-  std::vector<Candidate> first{{10, 10, 5.0F, 0}, {30, 20, 4.0F, 0}};
+  std::vector<Candidate> first{{10, 10, 5.0F}, {30, 20, 4.0F}};
   suppression.run(64, 48, 4, 2, first);
-  std::vector<Candidate> second{{11, 11, 1.0F, 0}};
+  std::vector<Candidate> second{{11, 11, 1.0F}};
   suppression.run(64, 48, 4, 2, second);
   EXPECT_EQ(second.size(), 1U);
 }
@@ -253,11 +253,10 @@ TEST(KeypointSelection, GivesEachCellItsQuotaFirst) {
   // One corner holds all the high scores; every cell has three low ones.
   std::vector<Candidate> candidates;
   for (int i = 0; i < 400; ++i)
-    candidates.push_back({i % 20, i / 20, 10.0F + static_cast<float>(i), 0});
+    candidates.push_back({i % 20, i / 20, 10.0F + static_cast<float>(i)});
   for (int cell = 0; cell < 16; ++cell) {
     for (int k = 0; k < 3; ++k) {
-      candidates.push_back(
-          {(cell % 4) * 20 + 5 + k, (cell / 4) * 20 + 5, static_cast<float>(k), 0});
+      candidates.push_back({(cell % 4) * 20 + 5 + k, (cell / 4) * 20 + 5, static_cast<float>(k)});
     }
   }
   const auto per_cell = [](const std::vector<Candidate>& chosen) {
@@ -292,7 +291,7 @@ TEST(KeypointSelection, DoesNotDependOnTheOrderOfTheInput) {
 }
 
 TEST(KeypointSelection, KeepsAllWhereThereAreFew) {
-  std::vector<Candidate> candidates{{1, 1, 0.1F, 0}, {2, 2, 0.9F, 0}};
+  std::vector<Candidate> candidates{{1, 1, 0.1F}, {2, 2, 0.9F}};
   select_keypoints(64, 64, 10, 1.0, 16, candidates);
   ASSERT_EQ(candidates.size(), 2U);
   EXPECT_FLOAT_EQ(candidates[0].score, 0.9F);
