@@ -27,14 +27,21 @@ def load_network(path: Path) -> nn.Module:
     return whole
 
 
+def halved(state: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
+    """The floating-point entries at half precision."""
+    return {k: v.half() if v.is_floating_point() else v for k, v in state.items()}
+
+
 def main() -> None:
-    """python -m training.checkpoint IN OUT: drops the optimiser's state; training can go on from OUT."""
+    """python -m training.checkpoint IN OUT: a small copy to go on from, of the running mean alone, at half precision."""
     p = argparse.ArgumentParser(description=main.__doc__)
     p.add_argument("source", type=Path)
     p.add_argument("out", type=Path)
     a = p.parse_args()
     saved = torch.load(a.source, weights_only=True)
-    torch.save({k: v for k, v in saved.items() if k != "optimiser"}, a.out)
+    small = {k: saved[k] for k in ("step", "network", "head_config") if k in saved}
+    small |= {k: halved(saved[k]) for k in ("ema", "head") if k in saved}
+    torch.save(small, a.out)
 
 
 if __name__ == "__main__":

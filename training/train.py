@@ -82,8 +82,8 @@ class Trainer:
             self._restore(torch.load(resume, weights_only=True))
 
     def _restore(self, saved: dict) -> None:
-        self.model.load_state_dict(saved["model"])
-        self.ema.state = saved["ema"]
+        self.model.load_state_dict(saved.get("model", saved["ema"]))
+        self.ema.state = {k: v.float() if v.is_floating_point() else v for k, v in saved["ema"].items()}
         self.step = saved["step"]
         if "optimiser" in saved:
             self.optimiser.load_state_dict(saved["optimiser"])
