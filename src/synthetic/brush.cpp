@@ -10,23 +10,41 @@
 namespace dxslam::brush {
 namespace {
 
-// Random grid enlarged to the size of the image, wrapped so that opposite borders fit.
-cv::Mat smooth_field(Random& random, cv::Size size, int cells_x, int cells_y) {
-  constexpr int kBorder = 2;
-  cv::Mat grid(cells_y, cells_x, CV_32FC1);
-  for (int y = 0; y < cells_y; ++y) {
-    for (int x = 0; x < cells_x; ++x) {
-      grid.at<float>(y, x) = static_cast<float>(random.uniform(-1.0, 1.0));
+/// Where each of `size` places lies among `cells` nodes that repeat: the node before and the share
+/// of the next one.
+struct Places {
+  std::vector<int> before, after;
+  std::vector<float> share;
+};
+
+Places places_among(int cells, int size) {
+  Places places;
+  for (int i = 0; i < size; ++i) {
+    const double at = (i + 0.5) * cells / size;
+    const int node = static_cast<int>(at);
+    places.before.push_back(node);
+    places.after.push_back((node + 1) % cells);
+    places.share.push_back(static_cast<float>(at - node));
+  }
+  return places;
+}
+
+// Adds a random grid, enlarged by straight lines to the size of the image, times strength.
+void add_field(cv::Mat& sum, Random& random, int cells_x, int cells_y, float strength) {
+  std::vector<float> grid(static_cast<std::size_t>(cells_x) * cells_y);
+  for (float& node : grid) node = strength * static_cast<float>(random.uniform(-1.0, 1.0));
+  const Places columns = places_among(cells_x, sum.cols), rows = places_among(cells_y, sum.rows);
+  std::vector<float> line(static_cast<std::size_t>(cells_x));
+  for (int y = 0; y < sum.rows; ++y) {
+    const float* above = grid.data() + static_cast<std::size_t>(rows.before[y]) * cells_x;
+    const float* below = grid.data() + static_cast<std::size_t>(rows.after[y]) * cells_x;
+    for (int i = 0; i < cells_x; ++i) line[i] = above[i] + rows.share[y] * (below[i] - above[i]);
+    float* out = sum.ptr<float>(y);
+    for (int x = 0; x < sum.cols; ++x) {
+      const float left = line[columns.before[x]];
+      out[x] += left + columns.share[x] * (line[columns.after[x]] - left);
     }
   }
-  cv::Mat padded, large;
-  cv::copyMakeBorder(grid, padded, kBorder, kBorder, kBorder, kBorder, cv::BORDER_WRAP);
-  const double scale_x = static_cast<double>(size.width) / cells_x;
-  const double scale_y = static_cast<double>(size.height) / cells_y;
-  const cv::Matx23d transform(1.0 / scale_x, 0, kBorder, 0, 1.0 / scale_y, kBorder);
-  cv::warpAffine(padded, large, transform, size, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
-                 cv::BORDER_REPLICATE);
-  return large;
 }
 
 }  // namespace
@@ -38,7 +56,7 @@ cv::Mat fractal_noise(Random& random, cv::Size size, int cells_x, int cells_y, i
   for (int octave = 0; octave < octaves; ++octave) {
     const int x = std::min(cells_x << octave, size.width);
     const int y = std::min(cells_y << octave, size.height);
-    cv::scaleAdd(smooth_field(random, size, x, y), strength, sum, sum);
+    add_field(sum, random, x, y, static_cast<float>(strength));
     total += strength * strength;
     strength *= gain;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/error.h"
 #include "synthetic/random.h"
@@ -103,25 +104,27 @@ void CameraPath::make_timetable() {
   for (int i = 0; i < steps; ++i) {
     const Stand next = stand_at((i + 1) * kStep);
     const double turn = std::hypot(wrap_angle(next.yaw - last.yaw), next.pitch - last.pitch);
-    slowness[i] = std::max(1.0 / speed_, turn / kStep / (0.85 * options_.turn_rate * kDegree));
+    slowness[i] = std::max(1.0 / speed_, turn / kStep / (0.95 * options_.turn_rate * kDegree));
     last = next;
   }
-  std::vector<double> smooth(steps);
-  const int reach = 20;
+  // The slowest of the surroundings, then their mean: smooth, and never quicker than allowed.
+  constexpr int kReach = 10;
+  const auto first = [](int i) { return std::max(0, i - kReach); };
+  const auto last_of = [steps](int i) { return std::min(steps - 1, i + kReach); };
+  std::vector<double> slowest(steps);
   for (int i = 0; i < steps; ++i) {
-    double sum = 0.0, weights = 0.0;
-    for (int k = std::max(0, i - reach); k <= std::min(steps - 1, i + reach); ++k) {
-      const double weight = reach + 1 - std::abs(k - i);
-      sum += weight * slowness[k];
-      weights += weight;
-    }
+    slowest[i] = *std::max_element(slowness.begin() + first(i), slowness.begin() + last_of(i) + 1);
+  }
+  times_ = {options_.standstill};
+  for (int i = 0; i < steps; ++i) {
+    const double sum =
+        std::accumulate(slowest.begin() + first(i), slowest.begin() + last_of(i) + 1, 0.0);
     // Constant acceleration from rest: the speed grows with the root of the distance.
     const double ramp = kRampTime * speed_ / 2.0;
     const double start = std::sqrt(std::min(1.0, (i + 0.5) * kStep / ramp));
-    smooth[i] = sum / weights / start;
+    const double mean = sum / (last_of(i) - first(i) + 1);
+    times_.push_back(times_.back() + mean / start * kStep);
   }
-  times_ = {options_.standstill};
-  for (const double s : smooth) times_.push_back(times_.back() + s * kStep);
 }
 
 double CameraPath::length_at(double time) const {

@@ -138,8 +138,8 @@ TEST(Factors, AreSetByName) {
 }
 
 TEST(Factors, RefuseUnknownNamesAndStrengths) {
-  FactorOptions factors;
-  const auto message = [&](const std::string& text) -> std::string {
+  const auto message = [](const std::string& text) -> std::string {
+    FactorOptions factors;
     try {
       set_factor(factors, text);
     } catch (const InputError& e) {

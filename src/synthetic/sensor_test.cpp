@@ -60,9 +60,9 @@ TEST(DepthSensor, LeavesAShadowOnOneSideOfNearThings) {
 }
 
 TEST(ImageSensor, EncodesWithGammaAndClips) {
-  cv::Mat radiance(4, 4, CV_32FC3, cv::Scalar(1.7, std::pow(0.5, 2.2), 0.0));
+  cv::Mat radiance(4, 4, CV_32FC3, cv::Scalar(1.7, std::pow(0.6, 2.2), 0.0));
   const cv::Mat image = develop_image(radiance, 1.0, 0.0, 1);
-  EXPECT_EQ(image.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 128, 0));
+  EXPECT_EQ(image.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 153, 0));
 }
 
 TEST(ImageSensor, NoiseHasTheStatedStrengthAndFollowsItsSeed) {

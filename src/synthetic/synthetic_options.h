@@ -62,7 +62,7 @@ struct SyntheticOptions {
     visit("scene", self.scene, "", "room, office (6 rooms, 69 m) or corridor (a loop of 208 m)");
     visit("seed", self.seed, {0, 2147483647}, "", "seed of the place and of the walk");
     visit("frames", self.frames, {0, 1000000}, "frames", "most frames; 0: the whole path");
-    visit("fps", self.fps, {0.1, 240.0}, "1/s", "frame rate");
+    visit("fps", self.fps, {0.01, 240.0}, "1/s", "frame rate");
     visit("width", self.width, {32, 4096}, "pixels", "of the images");
     visit("height", self.height, {32, 4096}, "pixels", "of the images");
     visit("threads", self.threads, {1, 256}, "", "threads; has no influence on the result");

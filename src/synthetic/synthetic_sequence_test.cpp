@@ -75,10 +75,7 @@ TEST(SyntheticSequence, GroundTruthFitsTheGeometryAndTheColours) {
     EXPECT_LT(near.differences[near.differences.size() / 2], 5.0) << "frame " << i;
     EXPECT_LT(near.differences[near.differences.size() * 9 / 10], 30.0) << "frame " << i;
   }
-}
-
-TEST(SyntheticSequence, CloseTheLoopOnTheSamePlace) {
-  const SyntheticSequence sequence(quiet_room());
+  // The loop closes: one of the last frames sees what the first one saw.
   const Trajectory& truth = sequence.ground_truth();
   std::size_t nearest = sequence.size() / 2;
   for (std::size_t i = nearest; i < sequence.size(); ++i) {
@@ -113,17 +110,19 @@ TEST(SyntheticSequence, EqualOptionsGiveEqualFramesInAnyOrderWithAnyThreads) {
 
 TEST(SyntheticSequence, PeopleHideThingsAndChangeNothingElse) {
   SyntheticOptions options = quiet_room();
-  const SyntheticSequence empty(options);
   options.factors.people = 1.0;
   const SyntheticSequence crowded(options);
-  const int first_person = static_cast<int>(empty.world().surfaces.size());
+  const CameraPath path(make_layout(options.scene, options.seed), options.path, options.seed);
+  const int first_person = static_cast<int>(crowded.world().surfaces.size());
   int visited = 0, most = 0;
-  for (std::size_t i = 0; i < empty.size(); i += 2) {
-    EXPECT_EQ(translation_distance(empty.ground_truth()[i].world_from_camera,
-                                   crowded.ground_truth()[i].world_from_camera),
+  for (std::size_t i = 0; i < crowded.size(); i += 2) {
+    const StampedPose& pose = crowded.ground_truth()[i];
+    EXPECT_EQ(translation_distance(pose.world_from_camera, path.world_from_camera(pose.stamp)),
               0.0);
-    const Rendering a = empty.draw_ideal(i, 2), b = crowded.draw_ideal(i, 2);
-    cv::Mat people = b.surface >= first_person, beside;
+    const Rendering a = render(crowded.world(), {}, crowded.camera(), pose.world_from_camera, {});
+    const Rendering b = crowded.draw_ideal(i, 2);
+    const cv::Mat people = b.surface >= first_person;
+    cv::Mat beside;
     const int count = cv::countNonZero(people);
     visited += count > 0;
     most = std::max(most, count);
@@ -132,7 +131,7 @@ TEST(SyntheticSequence, PeopleHideThingsAndChangeNothingElse) {
     EXPECT_EQ(cv::norm(a.depth, b.depth, cv::NORM_INF, ~people), 0.0);
     EXPECT_EQ(cv::countNonZero(people & (b.depth > a.depth)), 0);
   }
-  EXPECT_GT(visited, static_cast<int>(empty.size()) / 6);
+  EXPECT_GT(visited, static_cast<int>(crowded.size()) / 6);
   EXPECT_GT(most, 320 * 240 / 25);
 }
 
@@ -182,7 +181,7 @@ TEST(SyntheticSequence, ChangedObjectsLeaveThePathAndTheWalls) {
   EXPECT_LT(changed / total, 0.7);
 }
 
-TEST(SyntheticSequence, LowLightIsDarkAndGrey) {
+TEST(SyntheticSequence, LowLightIsDarkAndGreyAndFramesLimitTheLength) {
   SyntheticOptions options = quiet_room();
   options.frames = 2;
   options.factors.low_light = 0.12;
@@ -191,6 +190,9 @@ TEST(SyntheticSequence, LowLightIsDarkAndGrey) {
   ASSERT_EQ(image->color.type(), CV_8UC1);
   EXPECT_LT(cv::mean(image->color)[0], 20.0);
   EXPECT_EQ(image->depth.type(), CV_32FC1);
+  EXPECT_EQ(sequence.size(), 2U);
+  EXPECT_LT(sequence.path_length(), 0.5);
+  EXPECT_THROW(sequence.draw(2, 1), ContractError);
 }
 
 TEST(SyntheticSequence, MotionBlurSoftensTheImageOnlyWhileMoving) {
@@ -223,21 +225,13 @@ TEST(SyntheticSequence, RefusesOptionsOutOfRange) {
   EXPECT_THROW(SyntheticSequence{options}, InputError);
 }
 
-TEST(SyntheticSequence, FramesLimitTheLengthAndTheDefaultIsTheWholePath) {
-  SyntheticOptions options = quiet_room();
-  options.frames = 3;
-  const SyntheticSequence part(options);
-  EXPECT_EQ(part.size(), 3U);
-  EXPECT_THROW(part.draw(3, 1), ContractError);
-  EXPECT_LT(part.path_length(), 1.0);
-}
-
 class EveryScene : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryScene, HasPlentyOfCornersAndFreeSpaceInEveryView) {
   SyntheticOptions options;
   options.scene = GetParam();
-  options.fps = GetParam() == "room" ? 0.7 : 0.1;
+  options.fps = GetParam() == "room" ? 0.5 : 0.08;
+  options.factors.depth_noise = 0.0;
   SyntheticSequence sequence(options);
   ASSERT_GE(sequence.size(), 12U);
   const auto orb = cv::ORB::create(1000);
@@ -252,10 +246,8 @@ TEST_P(EveryScene, HasPlentyOfCornersAndFreeSpaceInEveryView) {
     EXPECT_GT(mean, 60.0) << "frame " << i;
     EXPECT_LT(mean, 190.0) << "frame " << i;
     double nearest = 0.0;
-    cv::minMaxLoc(sequence.draw_ideal(i, 2).depth, &nearest, nullptr);
+    cv::minMaxLoc(image->depth, &nearest, nullptr, nullptr, nullptr, image->depth > 0);
     EXPECT_GT(nearest, 0.3) << "frame " << i;
-    EXPECT_GT(cv::countNonZero(image->depth), static_cast<int>(image->depth.total()) / 2)
-        << "frame " << i;
   }
 }
 

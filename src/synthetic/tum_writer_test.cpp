@@ -20,21 +20,26 @@ namespace fs = std::filesystem;
 
 class TumWriter : public testing::Test {
  protected:
+  static void SetUpTestSuite() {
+    SyntheticOptions options = testing_worlds::quiet_room();
+    options.frames = 5;
+    options.factors.depth_noise = 1.0;
+    sequence_ = new SyntheticSequence(options);
+  }
+  static void TearDownTestSuite() { delete sequence_; }
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("dxslam_synth_" + std::to_string(getpid()));
     fs::remove_all(folder_);
-    options_ = testing_worlds::quiet_room();
-    options_.frames = 5;
-    options_.factors.depth_noise = 1.0;
   }
   void TearDown() override { fs::remove_all(folder_); }
 
+  static SyntheticSequence* sequence_;
   fs::path folder_;
-  SyntheticOptions options_;
 };
+SyntheticSequence* TumWriter::sequence_ = nullptr;
 
 TEST_F(TumWriter, WhatItWritesIsReadBackTheSame) {
-  SyntheticSequence sequence(options_);
+  SyntheticSequence& sequence = *sequence_;
   TumWriterOptions writer;
   writer.png = true;
   ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), writer));
@@ -56,7 +61,7 @@ TEST_F(TumWriter, WhatItWritesIsReadBackTheSame) {
 }
 
 TEST_F(TumWriter, JpegIsCloseAndTheSceneIsDescribed) {
-  SyntheticSequence sequence(options_);
+  SyntheticSequence& sequence = *sequence_;
   ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), {}));
   const auto read = open_sequence(folder_.string());
   const cv::Mat difference = read->read(2)->color - sequence.read(2)->color;
@@ -69,7 +74,7 @@ TEST_F(TumWriter, JpegIsCloseAndTheSceneIsDescribed) {
 }
 
 TEST_F(TumWriter, RefusesAFolderWithContentUnlessAskedToReplaceIt) {
-  const SyntheticSequence sequence(options_);
+  SyntheticSequence& sequence = *sequence_;
   fs::create_directories(folder_);
   std::ofstream(folder_ / "notes.md") << "mine";
   EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), {}), InputError);
@@ -82,7 +87,7 @@ TEST_F(TumWriter, RefusesAFolderWithContentUnlessAskedToReplaceIt) {
 }
 
 TEST_F(TumWriter, StopsWhenToldAndLeavesNoLists) {
-  const SyntheticSequence sequence(options_);
+  SyntheticSequence& sequence = *sequence_;
   TumWriterOptions writer;
   writer.threads = 1;
   std::size_t calls = 0;
@@ -94,10 +99,6 @@ TEST_F(TumWriter, StopsWhenToldAndLeavesNoLists) {
   EXPECT_FALSE(write_tum_sequence(sequence, folder_.string(), writer));
   EXPECT_EQ(calls, 2U);
   EXPECT_FALSE(fs::exists(folder_ / "rgb.txt"));
-}
-
-TEST_F(TumWriter, SaysWhenItCannotWrite) {
-  const SyntheticSequence sequence(options_);
   EXPECT_THROW(write_tum_sequence(sequence, "/proc/nowhere", {}), InputError);
 }
 
