@@ -75,4 +75,29 @@ Sim3 Sim3::inverse() const {
   return {1.0 / scale_, q, -(q * translation_) / scale_};
 }
 
+Matrix7d sim3_small_adjoint(const Vector7d& v) {
+  const Eigen::Matrix3d turn = skew(v.segment<3>(3));
+  Matrix7d ad = Matrix7d::Zero();
+  ad.topLeftCorner<3, 3>() = v(6) * Eigen::Matrix3d::Identity() + turn;
+  ad.block<3, 3>(0, 3) = skew(v.head<3>());
+  ad.block<3, 1>(0, 6) = -v.head<3>();
+  ad.block<3, 3>(3, 3) = turn;
+  return ad;
+}
+
+Matrix7d sim3_right_jacobian_inverse(const Vector7d& v) {
+  // B_n / n! of the even Bernoulli numbers; of the odd ones only the first is not zero.
+  constexpr double kCoefficients[] = {1.0 / 12.0, -1.0 / 720.0, 1.0 / 30240.0, -1.0 / 1209600.0,
+                                      1.0 / 47900160.0};
+  const Matrix7d ad = sim3_small_adjoint(v);
+  const Matrix7d squared = ad * ad;
+  Matrix7d power = squared;
+  Matrix7d sum = Matrix7d::Identity() + 0.5 * ad;
+  for (const double coefficient : kCoefficients) {
+    sum += coefficient * power;
+    power = power * squared;
+  }
+  return sum;
+}
+
 }  // namespace dxslam

@@ -91,5 +91,32 @@ TEST(Sim3, AgreesWithSe3AtUnitScale) {
   }
 }
 
+TEST(Sim3, SmallAdjointIsTheDerivativeOfTheAdjoint) {
+  SampleSource source(5);
+  for (int i = 0; i < 10; ++i) {
+    const Vector7d v = tangent(source, 1.0);
+    const Matrix7d numeric =
+        (Sim3::exp(1e-6 * v).adjoint() - Sim3::exp(-1e-6 * v).adjoint()) / 2e-6;
+    EXPECT_LT((sim3_small_adjoint(v) - numeric).norm(), 1e-8);
+  }
+}
+
+TEST(Sim3, RightJacobianInverseMatchesNumericDifferences) {
+  SampleSource source(6);
+  for (const double angle : {0.0, 1e-8, 0.1, 0.5, 1.5, 3.0}) {
+    for (int i = 0; i < 5; ++i) {
+      Vector7d v;
+      v << source.vector(1.0), source.direction(angle), source.uniform(-0.3, 0.3);
+      Matrix7d numeric;
+      for (int k = 0; k < 7; ++k) {
+        const Vector7d d = 1e-6 * Vector7d::Unit(k);
+        numeric.col(k) =
+            ((Sim3::exp(v) * Sim3::exp(d)).log() - (Sim3::exp(v) * Sim3::exp(-d)).log()) / 2e-6;
+      }
+      EXPECT_LT((sim3_right_jacobian_inverse(v) - numeric).norm(), angle < 1.0 ? 1e-8 : 5e-3);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dxslam

@@ -63,7 +63,7 @@ TEST_P(BundleEngineTest, OwnSolverFindsTheMinimumThatCeresFinds) {
     BundleSceneOptions options;
     options.poses = 9;
     options.points = 200;
-    options.outlier_share = stage_.robust ? 0.05 : 0.0;
+    options.outlier_share = GetParam() ? 0.05 : 0.0;
     options.seed = seed;
     start_ = BundleState();
     stage_.held.clear();
@@ -73,12 +73,13 @@ TEST_P(BundleEngineTest, OwnSolverFindsTheMinimumThatCeresFinds) {
     const BundleStageReport a = minimise_with_schur(stage_, own);
     const BundleStageReport b = minimise_with_ceres(stage_, ceres);
     ASSERT_TRUE(a.usable && b.usable);
-    // Both stop at a share of the cost, so weakly held directions may differ by parts of a sigma.
-    EXPECT_NEAR(cost(own), cost(ceres), 5e-5 * cost(ceres));
+    // Under the kernel both converge slowly and stop at a share of the cost.
+    const double tolerance = GetParam() ? 1e-4 : 1e-7;
+    EXPECT_NEAR(cost(own), cost(ceres), tolerance * cost(ceres));
     EXPECT_LT(cost(own), 0.7 * cost(start_));
     for (std::size_t i = 0; i < own.camera_from_world.size(); ++i) {
-      EXPECT_LT((own.camera_from_world[i] * ceres.camera_from_world[i].inverse()).log().norm(),
-                5e-3);
+      const SE3 apart = own.camera_from_world[i] * ceres.camera_from_world[i].inverse();
+      EXPECT_LT(apart.log().norm(), GetParam() ? 2e-3 : 1e-5);
     }
   }
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 //
-// The one file that knows Ceres for bundle adjustment.
+// Bundle adjustment by Ceres; pose_graph.cpp is the only other file that knows it.
 #include <ceres/ceres.h>
-#include <glog/logging.h>
 
 #include <array>
 #include <cmath>
 #include <deque>
 
 #include "optimization/bundle_engine.h"
+#include "optimization/quiet_log.h"
 
 namespace dxslam {
 namespace {
@@ -96,21 +96,6 @@ class StopCallback final : public ceres::IterationCallback {
 
  private:
   const BundleStage& stage_;
-};
-
-/// Ceres warns through glog, which writes to stderr unless the host program has set it up. Where it
-/// has, its log is left as it is; else the warnings are held back for as long as this lives.
-class QuietLog {
- public:
-  QuietLog() : level_(FLAGS_minloglevel) {
-    if (!google::IsGoogleLoggingInitialized()) FLAGS_minloglevel = google::GLOG_FATAL;
-  }
-  ~QuietLog() { FLAGS_minloglevel = level_; }
-  QuietLog(const QuietLog&) = delete;
-  QuietLog& operator=(const QuietLog&) = delete;
-
- private:
-  int level_;
 };
 
 /// Owns all that a ceres::Problem points to. Must be declared before, so that it outlives, the
