@@ -38,6 +38,7 @@ void Camera::validate(const std::string& where) const {
   check("fps", fps, 1e-3, 1e4);
   check("depth_factor", depth_factor, 1e-3, 1e6);
   check("depth_baseline", depth_baseline, 1e-4, 10.0);
+  check("disparity_noise", disparity_noise, 1e-3, 100.0);
   check("max_depth", max_depth, 0.01, 1e4);
 }
 

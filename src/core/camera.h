@@ -16,10 +16,11 @@ struct Camera {
   double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;            ///< pixels
   double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;  ///< dimensionless
   double fps = 30.0;                                        ///< nominal frame rate, 1/s
-  double depth_factor = 1000.0;  ///< raw depth units a metre (16-bit image / factor = metres)
-  /// Baseline of the depth sensor, metres: turns depth into the disparity of a virtual right image,
-  /// whose noise in pixels is nearly independent of the distance.
-  double depth_baseline = 0.075;
+  double depth_factor = 1000.0;   ///< raw depth units a metre (16-bit image / factor = metres)
+  double depth_baseline = 0.075;  ///< metres, between the projector or cameras of the depth sensor
+  /// Standard deviation of the depth sensor's disparity, fx * baseline / depth, as a share of that
+  /// of a keypoint's pixel. Nearly the same at every distance.
+  double disparity_noise = 0.1;
   double max_depth = 10.0;  ///< metres; farther readings count as missing
 
   /// Throws InputError, naming the field, if the values cannot be those of a camera.
@@ -28,8 +29,9 @@ struct Camera {
   bool has_distortion() const {
     return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
   }
-  /// fx times baseline, pixel metres: disparity = bf / depth.
-  double bf() const { return fx * depth_baseline; }
+  /// Turns depth into the coordinate of a virtual right image that is as uncertain as a keypoint's
+  /// pixel: disparity = bf / depth, pixels.
+  double bf() const { return fx * depth_baseline / disparity_noise; }
   /// Undistorted pixel of a point in the camera frame; z must be positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {
     const double inverse_z = 1.0 / point_in_camera.z();

@@ -29,6 +29,8 @@ struct CameraFields : Camera {
     visit("fps", self.fps, {1e-3, 1e4}, "1/s", "nominal frame rate");
     visit("depth_factor", self.depth_factor, {1e-3, 1e6}, "1/m", "raw depth of one metre");
     visit("depth_baseline", self.depth_baseline, {1e-4, 10}, "m", "baseline of the depth sensor");
+    visit("disparity_noise", self.disparity_noise, {1e-3, 100}, "",
+          "deviation of the depth sensor's disparity as a share of a keypoint's");
     visit("max_depth", self.max_depth, {0.01, 1e4}, "m", "farther readings count as missing");
   }
 };

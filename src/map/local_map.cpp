@@ -100,9 +100,6 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId reference, std::uint64_t v
     local->observations.push_back(
         static_cast<std::uint16_t>(std::min<std::size_t>(p.observations.size(), 65535)));
   }
-  for (const PointId id : keyframe.points) {
-    if (id != kNoId && map.point(id).observations.size() > 1) ++local->reference_tracked;
-  }
   return local;
 }
 

@@ -39,7 +39,6 @@ struct LocalMap {
   FramePtr reference_frame;
   SE3 world_from_reference;
   std::vector<PointId> reference_points;  ///< one a keypoint of the reference; kNoId: none
-  int reference_tracked = 0;  ///< points of the reference that at least one other keyframe sees
 
   std::vector<PointId> ids;                 ///< rising
   std::vector<Eigen::Vector3d> positions;   ///< in world

@@ -19,8 +19,8 @@ struct MappingOptions {
   int min_observations = 2;
   int probation = 3;
   double min_found_ratio = 0.25;
-  int bundle_keyframes = 12;
-  int bundle_fixed_keyframes = 12;
+  int bundle_keyframes = 16;
+  int bundle_fixed_keyframes = 24;
   int bundle_min_shared = 15;
   double redundant_share = 0.9;
   int redundant_observers = 3;

@@ -35,4 +35,20 @@ std::vector<PoseObservation> pose_observations(const Frame& frame,
   return observations;
 }
 
+int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi2_pixel,
+                      std::vector<PoseObservation>& observations) {
+  const SE3 camera_from_world = report.world_from_camera.inverse();
+  int dropped = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    PoseObservation& o = observations[i];
+    if (report.inlier[i] != 0 || o.disparity <= 0.0) continue;
+    const Eigen::Vector3d p = camera_from_world * o.point_in_world;
+    if (p.z() <= 0.0) continue;
+    if ((camera.project(p) - o.pixel).squaredNorm() > chi2_pixel * o.sigma * o.sigma) continue;
+    o.disparity = 0.0;
+    ++dropped;
+  }
+  return dropped;
+}
+
 }  // namespace dxslam

@@ -35,6 +35,11 @@ std::vector<PoseObservation> pose_observations(const Frame& frame,
                                                const std::vector<KnownPoint>& known,
                                                const Camera& camera);
 
+/// Takes the disparity out of the outliers whose pixel alone passes `chi2_pixel` at the pose of
+/// `report`. Returns how many.
+int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi2_pixel,
+                      std::vector<PoseObservation>& observations);
+
 /// Disparity of a keypoint for the optimisers; 0 where it has no depth.
 inline double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera) {
   return frame.has_depth(keypoint) ? camera.bf() / static_cast<double>(frame.depths[keypoint])

@@ -58,7 +58,10 @@ TrackedFrame Tracker::track(const FramePtr& frame, std::optional<KeyframeRequest
     estimate = track_last_frame(*frame, grid);
     if (estimate) estimate = track_local_map(*frame, grid, std::move(*estimate));
   }
-  if (estimate) state_ = TrackingState::kTracking;
+  if (estimate) {
+    state_ = TrackingState::kTracking;
+    best_tracked_points_ = std::max(best_tracked_points_, estimate->map_points);
+  }
   if (!estimate && local_) state_ = TrackingState::kLost;
   TrackedFrame result = report(frame, estimate);
   if (estimate && (!local_ || needs_keyframe(*frame, *estimate))) {
@@ -171,8 +174,14 @@ Tracker::OptionalEstimate Tracker::estimate_by_pnp(const Frame& frame,
 
 Tracker::OptionalEstimate Tracker::optimise(const Frame& frame, const SE3& start,
                                             std::vector<KnownPoint> known) const {
-  const PoseReport pose =
-      optimize_pose(camera_, start, pose_observations(frame, known, camera_), options_.pose);
+  std::vector<PoseObservation> observations = pose_observations(frame, known, camera_);
+  PoseReport pose = optimize_pose(camera_, start, observations, options_.pose);
+  // A depth reading beside an edge is often that of another surface: where only the depth
+  // disagrees, the pixel still counts.
+  if (pose.success &&
+      drop_wrong_depths(camera_, pose, options_.pose.chi2_pixel, observations) > 0) {
+    pose = optimize_pose(camera_, pose.world_from_camera, observations, options_.pose);
+  }
   if (!pose.success || pose.inliers < options_.min_inliers) return std::nullopt;
   keep_inliers(known, pose.inlier);
   Estimate estimate;
@@ -251,9 +260,9 @@ Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const Key
 }
 
 bool Tracker::needs_keyframe(const Frame& frame, const Estimate& estimate) const {
-  return is_keyframe_due({frames_since_keyframe_, estimate.map_points, local_->reference_tracked,
+  return is_keyframe_due({frames_since_keyframe_, estimate.map_points, best_tracked_points_,
                           local_->world_from_reference.inverse() * estimate.world_from_camera},
-                         frame, points_by_keypoint(frame, estimate), options_.keyframe);
+                         frame, options_.keyframe);
 }
 
 std::vector<PointId> Tracker::points_by_keypoint(const Frame& frame,
@@ -277,6 +286,7 @@ KeyframeRequest Tracker::make_request(const FramePtr& frame, const Estimate& est
             [](const PointCount& a, const PointCount& b) { return a.point < b.point; });
   counts_.clear();
   frames_since_keyframe_ = 0;
+  best_tracked_points_ = 0;
   return request;
 }
 

@@ -68,6 +68,7 @@ class Tracker {
   SE3 last_from_current_;  // constant velocity: the motion of the last frame
   std::unordered_map<PointId, PointCount> counts_;
   int frames_since_keyframe_ = 0;
+  int best_tracked_points_ = 0;  // since the last keyframe
 };
 
 }  // namespace dxslam

@@ -11,10 +11,9 @@ namespace dxslam {
 struct KeyframeOptions {
   int min_gap = 1;
   int max_gap = 30;
-  double min_tracked_ratio = 0.8;
-  double max_rotation = 15.0;
-  double max_translation = 0.12;
-  double max_new_ratio = 0.55;
+  double min_tracked_ratio = 0.85;
+  double max_rotation = 10.0;
+  double max_translation = 0.1;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -22,13 +21,11 @@ struct KeyframeOptions {
     visit("max_gap", self.max_gap, {1, 100000}, "frames",
           "after so many frames any motion makes a keyframe");
     visit("min_tracked_ratio", self.min_tracked_ratio, {0, 1}, "",
-          "share of the reference keyframe's points below which a keyframe is due");
+          "share of the most points tracked since the last keyframe below which one is due");
     visit("max_rotation", self.max_rotation, {0.1, 180}, "degrees",
           "turn against the reference keyframe that makes a keyframe due");
     visit("max_translation", self.max_translation, {0.001, 10}, "",
           "move against the reference keyframe, relative to the median depth");
-    visit("max_new_ratio", self.max_new_ratio, {0, 1}, "",
-          "share of keypoints with depth that the map does not know");
   }
 };
 
@@ -36,7 +33,7 @@ struct TrackerOptions {
   int min_start_points = 50;
   int min_inliers = 12;
   double search_radius = 20.0;
-  double local_radius = 6.0;
+  double local_radius = 5.0;
   double ratio = 0.9;
   int min_predicted_matches = 40;
   double max_view_angle = 70.0;
