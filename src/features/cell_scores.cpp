@@ -35,12 +35,8 @@ DXSLAM_INLINE_KERNEL float exp_of_negative(float x) {
   return p * power;
 }
 
-struct CellStatistics {
-  float best;        // of the pixels
-  float normalizer;  // log sum exp of all channels
-};
-
-DXSLAM_INLINE_KERNEL CellStatistics cell_statistics(const float* logits, int pixels) {
+/// Sum of the exponentials of all channels, over that of the highest; and the highest.
+DXSLAM_INLINE_KERNEL float sum_of_exponentials(const float* logits, int pixels, float& peak) {
   float lane_max[kLanes];
   float lane_sum[kLanes];
   for (int j = 0; j < kLanes; ++j) {
@@ -56,83 +52,80 @@ DXSLAM_INLINE_KERNEL CellStatistics cell_statistics(const float* logits, int pix
   float best = lane_max[0];
   for (int j = 1; j < kLanes; ++j) best = std::max(best, lane_max[j]);
   for (int c = whole; c < pixels; ++c) best = std::max(best, logits[c]);
-  const float peak = std::max(best, logits[pixels]);
+  peak = std::max(best, logits[pixels]);
   for (int c = 0; c < whole; c += kLanes) {
     for (int j = 0; j < kLanes; ++j) lane_sum[j] += exp_of_negative(logits[c + j] - peak);
   }
   float sum = exp_of_negative(logits[pixels] - peak);
   for (int j = 0; j < kLanes; ++j) sum += lane_sum[j];
   for (int c = whole; c < pixels; ++c) sum += exp_of_negative(logits[c] - peak);
-  return {best, sum};
+  return sum;
 }
 
-DXSLAM_INLINE_KERNEL void normalize_row(const float* logits, int cells, int pixels,
-                                        float* normalizers, float* best) {
+/// One row of cells to `cell` rows of pixels.
+DXSLAM_INLINE_KERNEL void spread_row(const float* logits, int cells, int cell, float* out) {
+  const int pixels = cell * cell;
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(cells) * cell;
   for (int i = 0; i < cells; ++i) {
-    const float* cell = logits + static_cast<std::ptrdiff_t>(i) * (pixels + 1);
-    const CellStatistics statistics = cell_statistics(cell, pixels);
-    best[i] = statistics.best;
-    normalizers[i] = std::max(statistics.best, cell[pixels]) + std::log(statistics.normalizer);
+    const float* in = logits + static_cast<std::ptrdiff_t>(i) * (pixels + 1);
+    float peak = 0.0F;
+    const float sum = sum_of_exponentials(in, pixels, peak);
+    const float normalizer = peak + std::log(sum);
+    for (int y = 0; y < cell; ++y) {
+      float* row = out + y * stride + static_cast<std::ptrdiff_t>(i) * cell;
+      for (int x = 0; x < cell; ++x) row[x] = in[y * cell + x] - normalizer;
+    }
   }
 }
 
-using NormalizeRow = void (*)(const float*, int, int, float*, float*);
+/// The usual size as a constant, for which the loops unroll.
+DXSLAM_INLINE_KERNEL void spread_any_row(const float* logits, int cells, int cell, float* out) {
+  if (cell == 8) {
+    spread_row(logits, cells, 8, out);
+  } else {
+    spread_row(logits, cells, cell, out);
+  }
+}
 
-void normalize_row_generic(const float* logits, int cells, int pixels, float* n, float* best) {
-  normalize_row(logits, cells, pixels, n, best);
+using SpreadRow = void (*)(const float*, int, int, float*);
+
+void spread_row_generic(const float* logits, int cells, int cell, float* out) {
+  spread_any_row(logits, cells, cell, out);
 }
 
 #ifdef DXSLAM_HAS_X86_SIMD
-DXSLAM_TARGET_AVX2 void normalize_row_avx2(const float* logits, int cells, int pixels, float* n,
-                                           float* best) {
-  normalize_row(logits, cells, pixels, n, best);
+DXSLAM_TARGET_AVX2 void spread_row_avx2(const float* logits, int cells, int cell, float* out) {
+  spread_any_row(logits, cells, cell, out);
 }
-DXSLAM_TARGET_AVX512 void normalize_row_avx512(const float* logits, int cells, int pixels, float* n,
-                                               float* best) {
-  normalize_row(logits, cells, pixels, n, best);
+DXSLAM_TARGET_AVX512 void spread_row_avx512(const float* logits, int cells, int cell, float* out) {
+  spread_any_row(logits, cells, cell, out);
 }
 #endif
 
-NormalizeRow choose_normalize_row(SimdLevel level) {
+SpreadRow choose_spread_row(SimdLevel level) {
 #ifdef DXSLAM_HAS_X86_SIMD
-  if (level == SimdLevel::kAvx512) return normalize_row_avx512;
-  if (level == SimdLevel::kAvx2) return normalize_row_avx2;
+  if (level == SimdLevel::kAvx512) return spread_row_avx512;
+  if (level == SimdLevel::kAvx2) return spread_row_avx2;
 #endif
   (void)level;
-  return normalize_row_generic;
+  return spread_row_generic;
 }
 
 }  // namespace
 
-void CellScores::find(const TensorView& logits, double threshold, const PixelArea& area,
-                      std::vector<Candidate>& candidates, SimdLevel level) {
-  const int pixels = cell_ * cell_;
-  require(logits.channel_stride == 1 && logits.channels == pixels + 1 &&
+TensorView CellScores::log_probabilities(const TensorView& logits, SimdLevel level) {
+  require(logits.channel_stride == 1 && logits.channels == cell_ * cell_ + 1 &&
               logits.column_stride == logits.channels,
-          "CellScores::find wants cell * cell + 1 channels side by side");
-  require(threshold > 0.0, "CellScores::find wants a threshold above 0");
-  logits_ = logits;
-  const std::size_t cells = static_cast<std::size_t>(logits.height) * logits.width;
-  normalizers_.resize(cells);
-  best_.resize(cells);
-  const NormalizeRow normalize = choose_normalize_row(level);
-  const auto log_threshold = static_cast<float>(std::log(threshold));
+          "CellScores wants cell * cell + 1 channels side by side");
+  const int width = logits.width * cell_;
+  const int height = logits.height * cell_;
+  map_.resize(static_cast<std::size_t>(width) * height);
+  const SpreadRow spread = choose_spread_row(level);
   for (int row = 0; row < logits.height; ++row) {
-    float* normalizers = normalizers_.data() + static_cast<std::size_t>(row) * logits.width;
-    float* best = best_.data() + static_cast<std::size_t>(row) * logits.width;
-    normalize(logits.at(row, 0), logits.width, pixels, normalizers, best);
-    for (int column = 0; column < logits.width; ++column) {
-      if (!(best[column] - normalizers[column] > log_threshold)) continue;
-      const float* cell = logits.at(row, column);
-      for (int c = 0; c < pixels; ++c) {
-        const float score = cell[c] - normalizers[column];
-        if (!(score > log_threshold)) continue;
-        const int x = column * cell_ + c % cell_;
-        const int y = row * cell_ + c / cell_;
-        if (area.contains(x, y)) candidates.push_back({x, y, score});
-      }
-    }
+    spread(logits.at(row, 0), logits.width, cell_,
+           map_.data() + static_cast<std::size_t>(row) * cell_ * width);
   }
+  return TensorView::nchw(map_.data(), 1, height, width);
 }
 
 }  // namespace dxslam

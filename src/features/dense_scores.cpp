@@ -11,9 +11,52 @@
 namespace dxslam {
 namespace {
 
-/// 1 where the value is above the threshold; the loop over a row vectorises.
+/// 1 where the value is above the threshold.
 void mark_above(const float* row, int width, float threshold, std::uint8_t* marks) {
   for (int x = 0; x < width; ++x) marks[x] = row[x] > threshold ? 1 : 0;
+}
+
+/// 1 where the value is above the threshold and no direct neighbour beats it, ties as in `better`.
+/// All four neighbours of every pixel must exist.
+DXSLAM_INLINE_KERNEL void mark_peaks(const float* row, std::ptrdiff_t stride, int width,
+                                     float threshold, std::uint8_t* marks) {
+  const float* above = row - stride;
+  const float* below = row + stride;
+  for (int x = 0; x < width; ++x) {
+    const float v = row[x];
+    const float earlier = above[x] > row[x - 1] ? above[x] : row[x - 1];
+    const float later = below[x] > row[x + 1] ? below[x] : row[x + 1];
+    const float floor = earlier > threshold ? earlier : threshold;
+    marks[x] =
+        static_cast<std::uint8_t>(static_cast<int>(v > floor) & static_cast<int>(v >= later));
+  }
+}
+
+using MarkPeaks = void (*)(const float*, std::ptrdiff_t, int, float, std::uint8_t*);
+
+void mark_peaks_generic(const float* row, std::ptrdiff_t stride, int width, float threshold,
+                        std::uint8_t* marks) {
+  mark_peaks(row, stride, width, threshold, marks);
+}
+
+#ifdef DXSLAM_HAS_X86_SIMD
+DXSLAM_TARGET_AVX2 void mark_peaks_avx2(const float* row, std::ptrdiff_t stride, int width,
+                                        float threshold, std::uint8_t* marks) {
+  mark_peaks(row, stride, width, threshold, marks);
+}
+DXSLAM_TARGET_AVX512 void mark_peaks_avx512(const float* row, std::ptrdiff_t stride, int width,
+                                            float threshold, std::uint8_t* marks) {
+  mark_peaks(row, stride, width, threshold, marks);
+}
+#endif
+
+MarkPeaks choose_mark_peaks(SimdLevel level) {
+#ifdef DXSLAM_HAS_X86_SIMD
+  if (level == SimdLevel::kAvx512) return mark_peaks_avx512;
+  if (level == SimdLevel::kAvx2) return mark_peaks_avx2;
+#endif
+  (void)level;
+  return mark_peaks_generic;
 }
 
 /// Position of the next mark from `from` on, or the size.
@@ -24,41 +67,13 @@ int next_mark(const std::vector<std::uint8_t>& marks, int from) {
   return static_cast<int>(static_cast<const std::uint8_t*>(found) - marks.data());
 }
 
-/// Calls visit(x, y) for every pixel of the area above the threshold.
-template <class Visit>
-void for_each_above(const TensorView& scores, float threshold, const PixelArea& area,
-                    const Visit& visit) {
-  require(scores.column_stride == 1, "a score map must have rows without gaps");
-  require(area.x_begin >= 0 && area.y_begin >= 0 && area.x_end <= scores.width &&
-              area.y_end <= scores.height,
-          "the area must lie inside the score map");
-  const int width = area.x_end - area.x_begin;
-  if (width <= 0) return;
-  std::vector<std::uint8_t> marks(static_cast<std::size_t>(width));
-  for (int y = area.y_begin; y < area.y_end; ++y) {
-    mark_above(scores.at(y, area.x_begin), width, threshold, marks.data());
-    for (int i = next_mark(marks, 0); i < width; i = next_mark(marks, i + 1)) {
-      visit(area.x_begin + i, y);
-    }
-  }
-}
-
-/// Whether a direct neighbour inside the area beats the pixel: true of most that are no maximum.
-bool beaten_by_neighbour(const TensorView& scores, const PixelArea& area, int x, int y) {
-  const float* p = scores.at(y, x);
-  return (x > area.x_begin && p[-1] >= *p) || (x + 1 < area.x_end && p[1] > *p) ||
-         (y > area.y_begin && p[-scores.row_stride] >= *p) ||
-         (y + 1 < area.y_end && p[scores.row_stride] > *p);
-}
-
-/// Whether the pixel is the best of its square, as far as that lies in the area; ties as in
+/// Whether the pixel is the best of its square, as far as that lies in the map; ties as in
 /// `better`: rows above and pixels on the left win them.
-bool is_maximum(const TensorView& scores, const PixelArea& area, int radius, int x, int y) {
-  if (radius > 0 && beaten_by_neighbour(scores, area, x, y)) return false;
+bool is_maximum(const TensorView& scores, int radius, int x, int y) {
   const float score = *scores.at(y, x);
-  const int x_begin = std::max(area.x_begin, x - radius);
-  const int x_end = std::min(area.x_end, x + radius + 1);
-  for (int v = std::max(area.y_begin, y - radius); v < std::min(area.y_end, y + radius + 1); ++v) {
+  const int x_begin = std::max(0, x - radius);
+  const int x_end = std::min(scores.width, x + radius + 1);
+  for (int v = std::max(0, y - radius); v < std::min(scores.height, y + radius + 1); ++v) {
     const float* row = scores.at(v, 0);
     bool beaten = false;
     for (int u = x_begin; u < x; ++u) beaten |= v <= y ? row[u] >= score : row[u] > score;
@@ -71,17 +86,37 @@ bool is_maximum(const TensorView& scores, const PixelArea& area, int radius, int
 
 }  // namespace
 
-void find_candidates(const TensorView& scores, float threshold, const PixelArea& area,
+void find_candidates(const TensorView& scores, float threshold,
                      std::vector<Candidate>& candidates) {
-  for_each_above(scores, threshold, area,
-                 [&](int x, int y) { candidates.push_back({x, y, *scores.at(y, x)}); });
+  require(scores.column_stride == 1, "a score map must have rows without gaps");
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(scores.width));
+  for (int y = 0; y < scores.height; ++y) {
+    const float* row = scores.at(y, 0);
+    mark_above(row, scores.width, threshold, marks.data());
+    for (int x = next_mark(marks, 0); x < scores.width; x = next_mark(marks, x + 1)) {
+      candidates.push_back({x, y, row[x]});
+    }
+  }
 }
 
 void find_maxima(const TensorView& scores, float threshold, const PixelArea& area, int radius,
-                 std::vector<Candidate>& candidates) {
-  for_each_above(scores, threshold, area, [&](int x, int y) {
-    if (is_maximum(scores, area, radius, x, y)) candidates.push_back({x, y, *scores.at(y, x)});
-  });
+                 std::vector<Candidate>& candidates, SimdLevel level) {
+  require(scores.column_stride == 1, "a score map must have rows without gaps");
+  require(radius > 0, "find_maxima wants a radius above 0");
+  require(area.x_begin > 0 && area.y_begin > 0 && area.x_end < scores.width &&
+              area.y_end < scores.height,
+          "find_maxima wants an area off the rim of the map");
+  const MarkPeaks mark = choose_mark_peaks(level);
+  const int width = std::max(0, area.x_end - area.x_begin);
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(width));
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    const float* row = scores.at(y, area.x_begin);
+    mark(row, scores.row_stride, width, threshold, marks.data());
+    for (int i = next_mark(marks, 0); i < width; i = next_mark(marks, i + 1)) {
+      const int x = area.x_begin + i;
+      if (is_maximum(scores, radius, x, y)) candidates.push_back({x, y, row[i]});
+    }
+  }
 }
 
 }  // namespace dxslam

@@ -56,16 +56,15 @@ float soft_score(const TensorView& map, int channel, int y, int x) {
 }  // namespace
 
 void find_descriptor_maxima(const TensorView& map, int stride, double threshold,
-                            const PixelArea& area, std::vector<Candidate>& candidates) {
+                            std::vector<Candidate>& candidates) {
   for (int y = 1; y + 1 < map.height; ++y) {
     for (int x = 1; x + 1 < map.width; ++x) {
-      const int pixel_x = x * stride + stride / 2;
-      const int pixel_y = y * stride + stride / 2;
-      if (!area.contains(pixel_x, pixel_y)) continue;
       const int channel = strongest_channel(map, y, x);
       if (!is_local_maximum(map, channel, y, x) || is_edge(map, channel, y, x)) continue;
       const float score = soft_score(map, channel, y, x);
-      if (score > threshold) candidates.push_back({pixel_x, pixel_y, score});
+      if (score > threshold) {
+        candidates.push_back({x * stride + stride / 2, y * stride + stride / 2, score});
+      }
     }
   }
 }

@@ -13,9 +13,8 @@ namespace dxslam {
 /// candidate if its strongest channel is also a maximum of that channel among its eight
 /// neighbours, and the channel bends downwards there about equally in all directions (no edge). The
 /// score, 0 to 1, is the share of the channel among the 3x3 places by softmax; candidates above
-/// `threshold` are appended at the pixel of the input nearest to the middle of the place, if that
-/// is inside `area`.
+/// `threshold` are appended at the pixel of the input nearest to the middle of the place.
 void find_descriptor_maxima(const TensorView& map, int stride, double threshold,
-                            const PixelArea& area, std::vector<Candidate>& candidates);
+                            std::vector<Candidate>& candidates);
 
 }  // namespace dxslam

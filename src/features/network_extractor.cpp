@@ -33,8 +33,11 @@ DetectorOptions detector_options(const ModelManifest& manifest, const ExtractorO
   return detector;
 }
 
+/// Stands for "above 0" where logarithms are taken.
+constexpr double kLowestScore = 1e-9;
+
 float logit(double probability) {
-  const double p = std::clamp(probability, 1e-12, 1.0 - 1e-12);
+  const double p = std::clamp(probability, kLowestScore, 1.0 - kLowestScore);
   return static_cast<float>(std::log(p / (1.0 - p)));
 }
 
@@ -84,28 +87,31 @@ class NetworkExtractor final : public FeatureExtractor {
   void find_candidates(const cv::Size& size) {
     candidates_.clear();
     const PixelArea area = input_.area(detector_.border);
-    const int radius = detector_.nms_radius;
-    if (manifest_.scores && detector_.nms_iterations == 0) {
-      find_maxima(engine_.output(OutputRole::kScores), dense_threshold(), area, radius,
-                  candidates_);
-      return;
-    }
-    if (manifest_.scores) {
-      dxslam::find_candidates(engine_.output(OutputRole::kScores), dense_threshold(), area,
-                              candidates_);
-    } else if (manifest_.keypoint_logits) {
-      cells_.find(engine_.output(OutputRole::kKeypointLogits),
-                  std::max(detector_.score_threshold, 1e-9), area, candidates_);
-    } else {
+    if (manifest_.detection_from_descriptors) {
       find_descriptor_maxima(engine_.output(OutputRole::kDescriptors), manifest_.descriptor.stride,
-                             detector_.score_threshold, area, candidates_);
+                             detector_.score_threshold, candidates_);
+    } else {
+      scores_ = manifest_.keypoint_logits
+                    ? cells_.log_probabilities(engine_.output(OutputRole::kKeypointLogits))
+                    : engine_.output(OutputRole::kScores);
+      if (detector_.nms_iterations == 0 && detector_.nms_radius > 0) {
+        find_maxima(scores_, threshold(), area, detector_.nms_radius, candidates_);
+        return;
+      }
+      dxslam::find_candidates(scores_, threshold(), candidates_);
     }
-    suppression_.run(size.width, size.height, radius, detector_.nms_iterations, candidates_);
+    suppression_.run(size.width, size.height, detector_.nms_radius, detector_.nms_iterations,
+                     candidates_);
+    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
+                                     [&](const Candidate& c) { return !area.contains(c.x, c.y); }),
+                      candidates_.end());
   }
 
-  float dense_threshold() const {
-    return detector_.sigmoid ? logit(detector_.score_threshold)
-                             : static_cast<float>(detector_.score_threshold);
+  /// In units of the score map: log probabilities, logits or probabilities.
+  float threshold() const {
+    const double threshold = std::max(detector_.score_threshold, kLowestScore);
+    if (manifest_.keypoint_logits) return static_cast<float>(std::log(threshold));
+    return detector_.sigmoid ? logit(threshold) : static_cast<float>(threshold);
   }
 
   /// Keeps the best; from here on scores are those that keypoints carry.
@@ -138,27 +144,22 @@ class NetworkExtractor final : public FeatureExtractor {
     return detector_.sigmoid ? sigmoid(score) : score;
   }
 
+  /// Sub-pixel positions in the network's input, a candidate.
   std::vector<cv::Point2f> positions() const {
     std::vector<cv::Point2f> result;
     result.reserve(candidates_.size());
-    const bool cells = manifest_.keypoint_logits.has_value();
-    const bool dense = manifest_.scores.has_value();
-    const TensorView map = dense ? engine_.output(OutputRole::kScores) : TensorView{};
+    const bool refine = detector_.subpixel && !manifest_.detection_from_descriptors;
+    const bool is_log = manifest_.keypoint_logits || detector_.sigmoid;
+    const auto log_score = [&](int x, int y) {
+      const float score = *scores_.at(y, x);
+      return is_log ? score : std::log(std::max(score, static_cast<float>(kLowestScore)));
+    };
     for (const Candidate& c : candidates_) {
-      cv::Point2f offset(0.0F, 0.0F);
-      if (detector_.subpixel && cells) {
-        offset = peak_offset([&](int x, int y) { return cells_.log_score(x, y); }, c.x, c.y);
-      } else if (detector_.subpixel && dense) {
-        offset = detector_.sigmoid
-                     ? peak_offset([&](int x, int y) { return *map.at(y, x); }, c.x, c.y)
-                     : peak_offset([&](int x, int y) { return log_of(*map.at(y, x)); }, c.x, c.y);
-      }
+      const cv::Point2f offset = refine ? peak_offset(log_score, c.x, c.y) : cv::Point2f(0, 0);
       result.emplace_back(static_cast<float>(c.x) + offset.x, static_cast<float>(c.y) + offset.y);
     }
     return result;
   }
-
-  static float log_of(float probability) { return std::log(std::max(probability, 1e-12F)); }
 
   Features describe() {
     Features features;
@@ -181,6 +182,7 @@ class NetworkExtractor final : public FeatureExtractor {
   NetworkInput input_;
   OpenVinoEngine engine_;
   CellScores cells_;
+  TensorView scores_;  // of the last image; in cells_ or engine_
   NonMaximumSuppression suppression_;
   std::vector<Candidate> candidates_;
   StageTimer timer_;
