@@ -3,24 +3,19 @@
 #include "features/openvino_engine.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <mutex>
-#include <openvino/frontend/manager.hpp>
 #include <openvino/openvino.hpp>
 #include <optional>
-#include <sstream>
 
 #include "core/error.h"
 #include "features/data_directory.h"
+#include "features/openvino_model.h"
 
 namespace dxslam {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// One OpenVINO runtime for the whole program, alive as long as an engine uses it.
 std::shared_ptr<ov::Core> shared_core() {
@@ -35,178 +30,11 @@ std::shared_ptr<ov::Core> shared_core() {
   return core;
 }
 
-/// The last line of an exception of OpenVINO, which are long and name its source files.
-std::string short_reason(const std::exception& error) {
-  std::istringstream lines(error.what());
-  std::string last;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  }
-  return last;
-}
-
-std::string text(const ov::PartialShape& shape) { return shape.to_string(); }
-
-/// An output as the manifest describes it. `stride` 0 is a vector without places.
-struct OutputSpec {
-  std::string key;  // in the manifest
-  std::string name;
-  TensorLayout layout = TensorLayout::kNchw;
-  int channels = 0;
-  int stride = 0;
-
-  ov::Shape expected_shape(int height, int width) const {
-    const auto c = static_cast<std::size_t>(channels);
-    const auto h = static_cast<std::size_t>(height / stride);
-    const auto w = static_cast<std::size_t>(width / stride);
-    return layout == TensorLayout::kNchw ? ov::Shape{1, c, h, w} : ov::Shape{1, h, w, c};
-  }
-};
-
-bool same_name(const std::string& wanted, const std::string& found) {
-  return found == wanted || found == wanted + ":0";
-}
-
-template <class Port>
-bool has_name(const Port& port, const std::string& wanted) {
-  const auto& names = port.get_names();
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return same_name(wanted, name); }) ||
-         same_name(wanted, port.get_node()->get_friendly_name());
-}
-
-template <class Ports>
-std::string list_names(const Ports& ports) {
-  std::vector<std::string> names;
-  for (const auto& port : ports) {
-    names.push_back(port.get_names().empty() ? port.get_node()->get_friendly_name()
-                                             : *port.get_names().begin());
-  }
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
-}
-
-/// Name of OpenVINO's front end for a file. Trying all of them, as ov::Core does, would let some
-/// print on stderr.
-std::string front_end_of(const std::string& path) {
-  const std::string extension = fs::path(path).extension().string();
-  if (extension == ".xml") return "ir";
-  if (extension == ".onnx") return "onnx";
-  if (extension == ".pb" || fs::is_directory(path)) return "tf";
-  throw InputError(
-      fmt::format("{}: found extension `{}`, expected a model (OpenVINO .xml, .onnx, "
-                  "or TensorFlow .pb or saved-model folder)",
-                  path, extension));
-}
-
-/// TensorFlow graphs are cut before conversion, as some operations behind the cut (the resampler
-/// of the published HF-Net) cannot be converted.
-void cut(ov::frontend::InputModel& graph, const std::vector<std::string>& outputs,
-         const std::string& path) {
-  std::vector<ov::frontend::Place::Ptr> places;
-  for (const std::string& name : outputs) {
-    auto place = graph.get_place_by_tensor_name(name);
-    if (!place) place = graph.get_place_by_tensor_name(name + ":0");
-    if (!place) place = graph.get_place_by_operation_name(name);
-    if (!place) {
-      throw InputError(fmt::format(
-          "{}: found no tensor named {}, expected it as an output of the TensorFlow graph", path,
-          name));
-    }
-    places.push_back(place);
-  }
-  graph.override_all_outputs(places);
-}
-
-std::shared_ptr<ov::Model> read_model(const ModelFile& file,
-                                      const std::vector<std::string>& outputs) {
-  verify_model_file(file);
-  const std::string kind = front_end_of(file.path);
-  try {
-    ov::frontend::FrontEndManager manager;
-    const auto front_end = manager.load_by_framework(kind);
-    const auto graph = front_end->load(file.path);
-    if (!graph) throw std::runtime_error("not a model");
-    if (kind == "tf") cut(*graph, outputs, file.path);
-    return front_end->convert(graph);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw InputError(fmt::format(
-        "{}: cannot be read as a model, it is damaged or has parts that OpenVINO does not know: {}",
-        file.path, short_reason(e)));
-  }
-}
-
-/// The tensor called `name` anywhere in the model: an output, or an inner one to cut at.
-ov::Output<ov::Node> find_tensor(const ov::Model& model, const std::string& name,
-                                 const std::string& key, const std::string& path) {
-  for (const auto& result : model.outputs()) {
-    if (has_name(result, name)) return result.get_node()->input_value(0);
-  }
-  for (const auto& node : model.get_ordered_ops()) {
-    for (const auto& port : node->outputs()) {
-      if (has_name(port, name)) return port;
-    }
-  }
-  throw InputError(fmt::format("{}: found outputs {}, expected {} for `{}`", path,
-                               list_names(model.outputs()), name, key));
-}
-
-/// The model that computes just these outputs, in this order. It shares nodes with `model`.
-std::shared_ptr<ov::Model> keep_outputs(const ov::Model& model,
-                                        const std::vector<OutputSpec>& specs,
-                                        const std::string& path) {
-  ov::OutputVector outputs;
-  for (const OutputSpec& spec : specs) {
-    outputs.push_back(find_tensor(model, spec.name, spec.key, path));
-  }
-  return std::make_shared<ov::Model>(outputs, model.get_friendly_name())->clone();
-}
-
-void check_input(const ov::Model& model, const InputDescription& input, const std::string& path) {
-  if (model.inputs().size() != 1 || !has_name(model.input(0), input.name)) {
-    throw InputError(fmt::format("{}: found inputs {}, expected one called {}", path,
-                                 list_names(model.inputs()), input.name));
-  }
-  const ov::PartialShape shape = model.input(0).get_partial_shape();
-  const auto rank = shape.rank();
-  const std::size_t channel = input.layout == TensorLayout::kNchw ? 1 : 3;
-  if (rank.is_static() && rank.get_length() == 4 && shape[0].compatible(1) &&
-      shape[channel].compatible(input.channels)) {
-    return;
-  }
-  throw InputError(
-      fmt::format("{}: input {} has shape {}, expected {}", path, input.name, text(shape),
-                  input.layout == TensorLayout::kNchw ? fmt::format("[1,{},H,W]", input.channels)
-                                                      : fmt::format("[1,H,W,{}]", input.channels)));
-}
-
 ov::Shape input_shape(const InputDescription& input, int height, int width) {
   const auto c = static_cast<std::size_t>(input.channels);
   const auto h = static_cast<std::size_t>(height);
   const auto w = static_cast<std::size_t>(width);
   return input.layout == TensorLayout::kNchw ? ov::Shape{1, c, h, w} : ov::Shape{1, h, w, c};
-}
-
-/// Score maps and other one-channel outputs may come without their channel axis.
-bool shape_fits(const ov::Shape& found, const OutputSpec& spec, int height, int width) {
-  if (spec.stride == 0) return ov::shape_size(found) == static_cast<std::size_t>(spec.channels);
-  const ov::Shape expected = spec.expected_shape(height, width);
-  if (found == expected) return true;
-  return spec.channels == 1 && found.size() == 3 && found[0] == 1 &&
-         ov::shape_size(found) == ov::shape_size(expected) &&
-         found[1] == static_cast<std::size_t>(height / spec.stride);
-}
-
-void check_output(const ov::Output<const ov::Node>& port, const OutputSpec& spec, int height,
-                  int width, const std::string& path) {
-  const ov::PartialShape& shape = port.get_partial_shape();
-  if (shape.is_static() && shape_fits(shape.to_shape(), spec, height, width)) return;
-  throw InputError(
-      fmt::format("{}: output {} has shape {} for an input of {} x {} pixels, expected {}", path,
-                  spec.name, text(shape), width, height,
-                  spec.stride == 0 ? fmt::format("{} values", spec.channels)
-                                   : text(ov::PartialShape(spec.expected_shape(height, width)))));
 }
 
 /// Maps that are read position by position leave the network with their channels side by side;
@@ -340,7 +168,7 @@ class OpenVinoEngine::Impl {
       head_path_ = head_file.path;
       const auto head = read_model(head_file, {manifest_.global_head->output});
       head_ = keep_outputs(*head, {head_spec()}, head_path_);
-      check_head_input();
+      check_input_name(*head_, manifest_.global_head->input, head_path_);
     }
     if (manifest_.input.fixed_width > 0) {
       prepare(manifest_.input.fixed_width, manifest_.input.fixed_height);
@@ -430,14 +258,6 @@ class OpenVinoEngine::Impl {
             manifest_.global_dimension, 0};
   }
 
-  void check_head_input() const {
-    if (head_->inputs().size() == 1 && has_name(head_->input(0), manifest_.global_head->input)) {
-      return;
-    }
-    throw InputError(fmt::format("{}: found inputs {}, expected one called {}", head_path_,
-                                 list_names(head_->inputs()), manifest_.global_head->input));
-  }
-
   Compiled& prepare(int width, int height) {
     const auto key = std::make_pair(width, height);
     const auto found = compiled_.find(key);
@@ -509,7 +329,8 @@ class OpenVinoEngine::Impl {
     } catch (const ov::Exception& e) {
       throw InputError(fmt::format("{}: input {} cannot take the features of shape {}: {}",
                                    head_path_, manifest_.global_head->input,
-                                   text(ov::PartialShape(features.get_shape())), short_reason(e)));
+                                   ov::PartialShape(features.get_shape()).to_string(),
+                                   short_reason(e)));
     }
     check_output(std::as_const(*sized).output(0), head_spec(), 0, 0, head_path_);
     ov::preprocess::PrePostProcessor steps(sized);

@@ -15,10 +15,11 @@ namespace dxslam {
 
 enum class OutputRole { kKeypointLogits, kScores, kDescriptors, kReliability };
 
-/// Runs the networks of one manifest by OpenVINO on the processor; the one file that knows
-/// OpenVINO. Models are OpenVINO IR, ONNX, or TensorFlow (frozen graph or saved model, cut at the
-/// outputs that the manifest names, so that what lies behind them need not be supported). They are
-/// compiled once a size with static shapes. One thread at a time.
+/// Runs the networks of one manifest by OpenVINO on the processor; this and
+/// openvino_model.h are all that knows OpenVINO. Models are OpenVINO IR, ONNX, or TensorFlow
+/// (frozen graph or saved model, cut at the outputs that the manifest names, so that what lies
+/// behind them need not be supported). They are compiled once a size with static shapes. One thread
+/// at a time.
 class OpenVinoEngine {
  public:
   /// Loads and checks the model files: existence, hash, names and shapes of input and outputs.
