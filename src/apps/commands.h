@@ -9,10 +9,10 @@ namespace dxslam::apps {
 /// Exit codes of the program, as the README lists them.
 enum ExitCode : int {
   kSuccess = 0,
-  kBadUsage = 2,       ///< unknown command or option
-  kBadInput = 3,       ///< a file, recording, model or configuration that cannot be used
-  kTrackingFailed = 4, ///< the run went through, but no or almost no frame was tracked
-  kInterrupted = 5,    ///< stopped by a signal; what was made until then was saved
+  kBadUsage = 2,        ///< unknown command or option
+  kBadInput = 3,        ///< a file, recording, model or configuration that cannot be used
+  kTrackingFailed = 4,  ///< the run went through, but no or almost no frame was tracked
+  kInterrupted = 5,     ///< stopped by a signal; what was made until then was saved
   kInternalError = 70,
 };
 
