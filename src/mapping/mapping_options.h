@@ -16,7 +16,7 @@ struct MappingOptions {
   int triangulation_keyframes = 4;
   double min_parallax = 1.0;
   double epipolar_tolerance = 2.0;
-  int min_observations = 2;
+  int min_observations = 3;
   int probation = 3;
   double min_found_ratio = 0.25;
   int bundle_keyframes = 16;

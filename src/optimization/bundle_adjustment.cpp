@@ -13,7 +13,7 @@ namespace dxslam {
 namespace {
 
 // Up to here the dense reduced system of the own solver beats Ceres.
-constexpr int kMaxLocalPoses = 100;
+constexpr int kMaxLocalPoses = 400;
 
 void check_indices(const BundleProblem& problem) {
   const auto inside = [](int index, std::size_t size) {
