@@ -1,5 +1,20 @@
 include(GoogleTest)
 
+# dxslam_share_headers(TARGET): with DXSLAM_QUICK_BUILD, TARGET gets the headers below precompiled.
+# The core, first in line, compiles them; sources still include all that they use, and the presets
+# for development build without.
+function(dxslam_share_headers TARGET)
+  if(NOT DXSLAM_QUICK_BUILD)
+    return()
+  elseif("${TARGET}" STREQUAL "dxslam_core")
+    target_precompile_headers(${TARGET} PRIVATE
+      <Eigen/Core> <Eigen/Geometry> <opencv2/core.hpp> <fmt/format.h>
+      <algorithm> <cmath> <memory> <optional> <string> <vector>)
+  else()
+    target_precompile_headers(${TARGET} REUSE_FROM dxslam_core)
+  endif()
+endfunction()
+
 # dxslam_layer(NAME DEPENDS targets...): one library from src/NAME/*.cpp and, from *_test.cpp beside
 # the sources, one test program NAME_test. Headers are included as "NAME/header.h".
 function(dxslam_layer NAME)
@@ -13,6 +28,7 @@ function(dxslam_layer NAME)
     add_library(dxslam_${NAME} STATIC ${SOURCES})
     set(SCOPE PUBLIC)
     target_link_libraries(dxslam_${NAME} PRIVATE dxslam_warnings)
+    dxslam_share_headers(dxslam_${NAME})
   else()
     add_library(dxslam_${NAME} INTERFACE)
     set(SCOPE INTERFACE)
@@ -24,6 +40,7 @@ function(dxslam_layer NAME)
     add_executable(${NAME}_test ${TESTS})
     target_link_libraries(${NAME}_test PRIVATE dxslam_${NAME} ${ARG_TEST_DEPENDS} dxslam_warnings
                           GTest::gmock GTest::gtest_main)
+    dxslam_share_headers(${NAME}_test)
     target_compile_definitions(${NAME}_test PRIVATE DXSLAM_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
     gtest_discover_tests(${NAME}_test TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 120
                          WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
