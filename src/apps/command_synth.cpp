@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
-#include <unistd.h>
-
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -10,6 +7,7 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/progress.h"
 #include "synthetic/tum_writer.h"
 
 namespace dxslam::apps {
@@ -21,32 +19,6 @@ struct SynthArguments {
   std::vector<std::string> factors;
   bool force = false;
   bool png = false;
-};
-
-using Clock = std::chrono::steady_clock;
-
-// One line that is redrawn on a terminal, a line every ten percent elsewhere.
-class Progress {
- public:
-  bool operator()(std::size_t done, std::size_t total) {
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    const double rate = static_cast<double>(done) / std::max(seconds, 1e-3);
-    const double left = static_cast<double>(total - done) / std::max(rate, 1e-3);
-    const int percent = static_cast<int>(100 * done / total);
-    if (isatty(STDERR_FILENO) != 0) {
-      std::fprintf(stderr, "\rdrawing %zu/%zu  %d %%  %.1f frames/s  %.0f s left   ", done, total,
-                   percent, rate, left);
-      if (done == total) std::fputc('\n', stderr);
-    } else if (percent / 10 > last_ / 10 || done == total) {
-      std::fprintf(stderr, "drawing %zu/%zu, %.1f frames/s\n", done, total, rate);
-    }
-    last_ = percent;
-    return true;
-  }
-
- private:
-  Clock::time_point start_ = Clock::now();
-  int last_ = 0;
 };
 
 std::string factor_help() {
@@ -68,8 +40,13 @@ void run_synth(SynthArguments& arguments) {
   writer.overwrite = arguments.force;
   writer.png = arguments.png;
   writer.threads = arguments.options.threads;
-  writer.progress = Progress();
+  Progress progress("frames", sequence.size());
+  writer.progress = [&progress](std::size_t done, std::size_t) {
+    progress.update(done, "drawing");
+    return true;
+  };
   write_tum_sequence(sequence, arguments.out, writer);
+  progress.finish();
   std::printf("%zu frames, %.1f m, in %s\n", sequence.size(), sequence.path_length(),
               arguments.out.c_str());
 }
