@@ -16,7 +16,7 @@ using Jet = ceres::Jet<double, 6>;
 template <class T>
 Eigen::Matrix<T, 3, 1> project(const Camera& c, const Eigen::Matrix<T, 3, 1>& p) {
   const T u = c.fx * p.x() / p.z() + c.cx;
-  return {u, c.fy * p.y() / p.z() + c.cy, u - c.fx * c.depth_baseline / p.z()};
+  return {u, c.fy * p.y() / p.z() + c.cy, u - c.bf() / p.z()};
 }
 
 class ReprojectionTest : public testing::Test {
