@@ -13,7 +13,7 @@ namespace dxslam {
 constexpr double kMinProjectionDepth = 1e-3;
 
 /// Where a point in the camera frame appears, (u, v, u - disparity) in undistorted pixels. The
-/// third row is the column of the point in a virtual right image, depth_baseline metres away.
+/// third row is the column of the point in a virtual right image, see Camera::bf.
 inline Eigen::Vector3d project_stereo(const Camera& camera, const Eigen::Vector3d& p) {
   const double inverse_z = 1.0 / p.z();
   const double u = camera.fx * p.x() * inverse_z + camera.cx;

@@ -174,8 +174,8 @@ TEST(BundleAdjustment, GivesTheSameAnswerTwice) {
 
 TEST(BundleAdjustment, SolvesMorePosesThanTheLocalSolverTakes) {
   BundleSceneOptions options;
-  options.poses = 110;
-  options.points = 800;
+  options.poses = 410;
+  options.points = 1600;
   options.pose_noise = 0.005;
   const BundleScene scene = make_bundle_scene(options);
   BundleProblem problem = scene.problem;
