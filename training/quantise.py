@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from .data import LAST_TRAINING_FRAME, photo_files
 from .degrade import low_light, photometric
+from .first_layer import quantise_first_layer
 
 Tensor = NDArray[np.float32]
 CALIBRATION_IMAGES = 320
@@ -86,6 +87,7 @@ def main() -> None:
         fast_bias_correction=False,
         ignored_scope=nncf.IgnoredScope(names=kept),
     )
+    quantise_first_layer(quantised)
     ov.save_model(quantised, a.out / "hfnet_int8.xml", compress_to_fp16=True)
 
 
