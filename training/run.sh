@@ -14,7 +14,7 @@ while [ $# -gt 0 ]; do
     --data) data=$2; shift 2 ;;
     --teacher) teacher=$2; shift 2 ;;
     --local-steps) steps=$2; shift 2 ;;
-    --smoke) steps=6 decay=3 semantic=4 places=4 photos=500 out=out/smoke runs=out/smoke/runs; shift ;;
+    --smoke) steps=50 decay=25 semantic=4 places=4 photos=500 out=out/smoke runs=out/smoke/runs; shift ;;
     *) sed -n '2,5p' "$0" >&2; exit 2 ;;
   esac
 done
