@@ -19,13 +19,13 @@ struct MappingOptions {
   int min_observations = 3;
   int probation = 3;
   double min_found_ratio = 0.25;
-  int bundle_keyframes = 16;
-  int bundle_fixed_keyframes = 24;
+  int bundle_keyframes = 30;
+  int bundle_fixed_keyframes = 30;
   int bundle_min_shared = 15;
   double redundant_share = 0.9;
   int redundant_observers = 3;
   LocalMapOptions local_map;
-  BundleOptions bundle;
+  BundleOptions bundle{8, 8};
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

@@ -32,10 +32,10 @@ struct KeyframeOptions {
 struct TrackerOptions {
   int min_start_points = 50;
   int min_inliers = 12;
-  double search_radius = 20.0;
+  double search_radius = 12.0;
   double local_radius = 5.0;
   double ratio = 0.9;
-  int min_predicted_matches = 40;
+  int min_predicted_matches = 80;
   double max_view_angle = 70.0;
   double max_distance_ratio = 3.0;
   double depth_tolerance = 0.2;
