@@ -10,7 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
 
+#include "core/error.h"
 #include "core/options.h"
+#include "evaluation/ate.h"
 #include "evaluation/trajectory_svg.h"
 #include "io/atomic_file.h"
 #include "io/options_yaml.h"
@@ -111,6 +113,23 @@ Json summarise(const RunSettings& settings, const RunRecord& record, const Syste
   return summary;
 }
 
+// Top view beside the truth. The map's own frame starts at the first camera, so the estimate is
+// aligned first; where that cannot be done it is drawn alone.
+std::string draw_result(const Trajectory& estimate, const RgbdSequence& sequence) {
+  const Trajectory& truth = sequence.ground_truth();
+  if (truth.empty()) return draw_trajectory_svg(estimate, {}, sequence.name());
+  try {
+    const AteReport ate = evaluate_ate(truth, estimate);
+    Trajectory aligned = estimate;
+    for (StampedPose& pose : aligned) {
+      pose.world_from_camera = ate.truth_from_estimate.rigid() * pose.world_from_camera;
+    }
+    return draw_trajectory_svg(aligned, truth, sequence.name());
+  } catch (const InputError&) {
+    return draw_trajectory_svg(estimate, {}, sequence.name());
+  }
+}
+
 void write_map(const std::string& path, const Map& map) {
   std::vector<PlyPoint> points;
   for (const PointId id : map.point_ids()) {
@@ -146,8 +165,7 @@ void write_results(const std::string& folder, const RunSettings& settings, const
   write_map(dir / "map.ply", system.map());
   const Json summary = summarise(settings, record, options, sequence, system);
   write_file_atomically(dir / "summary.json", summary.dump(2) + "\n");
-  write_file_atomically(dir / "trajectory.svg",
-                        draw_trajectory_svg(trajectory, sequence.ground_truth(), sequence.name()));
+  write_file_atomically(dir / "trajectory.svg", draw_result(trajectory, sequence));
 }
 
 }  // namespace dxslam::apps
