@@ -97,8 +97,6 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId reference, std::uint64_t v
     local->positions.push_back(p.position);
     local->normals.push_back(p.normal);
     local->distances.push_back(p.distance);
-    local->observations.push_back(
-        static_cast<std::uint16_t>(std::min<std::size_t>(p.observations.size(), 65535)));
   }
   return local;
 }

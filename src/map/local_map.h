@@ -40,12 +40,11 @@ struct LocalMap {
   SE3 world_from_reference;
   std::vector<PointId> reference_points;  ///< one a keypoint of the reference; kNoId: none
 
-  std::vector<PointId> ids;                 ///< rising
-  std::vector<Eigen::Vector3d> positions;   ///< in world
-  std::vector<Eigen::Vector3d> normals;     ///< see MapPoint
-  std::vector<float> distances;             ///< see MapPoint
-  std::vector<std::uint16_t> observations;  ///< number of keyframes that see the point
-  cv::Mat descriptors;                      ///< one row a point
+  std::vector<PointId> ids;                ///< rising
+  std::vector<Eigen::Vector3d> positions;  ///< in world
+  std::vector<Eigen::Vector3d> normals;    ///< see MapPoint
+  std::vector<float> distances;            ///< see MapPoint
+  cv::Mat descriptors;                     ///< one row a point
 
   std::vector<KeyframeId> keyframes;  ///< all that are in here, rising
   std::vector<SE3> keyframe_poses;    ///< world_from_camera of each

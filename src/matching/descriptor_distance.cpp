@@ -70,7 +70,9 @@ void float_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
   }
 }
 
-DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, int bytes) {
+// Inlined into each clone of its callers, so that it uses their instruction set.
+[[gnu::always_inline]] inline int count_differing_bits(const std::uint8_t* a, const std::uint8_t* b,
+                                                       int bytes) {
   int bits = 0;
   int k = 0;
   for (; k + 8 <= bytes; k += 8) {
@@ -84,21 +86,15 @@ DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, int
   return bits;
 }
 
+DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, int bytes) {
+  return count_differing_bits(a, b, bytes);
+}
+
 DXSLAM_SIMD void binary_row_similarities(const std::uint8_t* a, const std::uint8_t* b, int b_rows,
                                          std::size_t b_step, int bytes, float* similarity) {
   for (int j = 0; j < b_rows; ++j) {
     const std::uint8_t* row = b + static_cast<std::size_t>(j) * b_step;
-    int bits = 0;
-    int k = 0;
-    for (; k + 8 <= bytes; k += 8) {
-      std::uint64_t x = 0;
-      std::uint64_t y = 0;
-      std::memcpy(&x, a + k, 8);
-      std::memcpy(&y, row + k, 8);
-      bits += __builtin_popcountll(x ^ y);
-    }
-    for (; k < bytes; ++k) bits += __builtin_popcount(static_cast<unsigned>(a[k] ^ row[k]));
-    similarity[j] = static_cast<float>(-bits);
+    similarity[j] = static_cast<float>(-count_differing_bits(a, row, bytes));
   }
 }
 
