@@ -41,6 +41,7 @@ function(dxslam_layer NAME)
     target_link_libraries(${NAME}_test PRIVATE dxslam_${NAME} ${ARG_TEST_DEPENDS} dxslam_warnings
                           GTest::gmock GTest::gtest_main)
     dxslam_share_headers(${NAME}_test)
+    target_compile_options(${NAME}_test PRIVATE $<$<BOOL:${DXSLAM_QUICK_BUILD}>:-O1>)
     target_compile_definitions(${NAME}_test PRIVATE DXSLAM_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
     gtest_discover_tests(${NAME}_test TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 120
                          WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
