@@ -19,12 +19,14 @@ INPUT_DEVIATION_FLOOR = 0.25  # grey levels; keeps a constant image from dividin
 
 @dataclass(frozen=True)
 class NetworkConfig:
-    """Sizes of the local part. `blocks` counts the RepVGG blocks at stride 8."""
+    """Sizes of the local part: channels at stride 4 and 8, RepVGG blocks there, channels inside the two heads."""
 
     stem: int = 32
+    stem_blocks: int = 0
     width: int = 64
-    blocks: int = 5
-    head: int = 64
+    blocks: int = 4
+    detector_head: int = 32
+    descriptor_head: int = 64
     descriptor: int = 64
 
     def as_dict(self) -> dict[str, int]:
@@ -92,12 +94,16 @@ class LocalNet(nn.Module):
         self.encoder = nn.Sequential(
             nn.PixelUnshuffle(4),
             conv_bn_relu(16, c.stem),
-            RepBlock(c.stem),
+            *[RepBlock(c.stem) for _ in range(c.stem_blocks)],
             conv_bn_relu(c.stem, c.width, 2),
             *[RepBlock(c.width) for _ in range(c.blocks)],
         )
-        self.detector = nn.Sequential(conv_bn_relu(c.width, c.head), nn.Conv2d(c.head, CELL * CELL + 1, 1))
-        self.descriptor = nn.Sequential(conv_bn_relu(c.width, c.head), nn.Conv2d(c.head, c.descriptor, 1))
+        self.detector = nn.Sequential(
+            conv_bn_relu(c.width, c.detector_head), nn.Conv2d(c.detector_head, CELL * CELL + 1, 1)
+        )
+        self.descriptor = nn.Sequential(
+            conv_bn_relu(c.width, c.descriptor_head), nn.Conv2d(c.descriptor_head, c.descriptor, 1)
+        )
 
     def forward(self, image: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         features = self.encoder(normalise(image))

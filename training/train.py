@@ -36,7 +36,6 @@ def arguments() -> argparse.Namespace:
     p.add_argument("--decay-steps", type=int, default=4000, help="last steps, over which the rate falls to zero")
     p.add_argument("--rate", type=float, default=2e-3)
     p.add_argument("--pairs", type=int, default=8, help="pairs of crops a step")
-    p.add_argument("--blocks", type=int, default=NetworkConfig.blocks)
     p.add_argument("--workers", type=int, default=2)
     p.add_argument("--threads", type=int, default=2)
     p.add_argument("--seed", type=int, default=0)
@@ -73,7 +72,7 @@ class Trainer:
 
     def __init__(self, args: argparse.Namespace) -> None:
         self.args, self.step = args, 0
-        self.model = LocalNet(NetworkConfig(blocks=args.blocks)).to(memory_format=torch.channels_last)
+        self.model = LocalNet(NetworkConfig()).to(memory_format=torch.channels_last)
         self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=1e-4)
         self.ema, self.losses = Ema(self.model), LossOptions()
         args.run.mkdir(parents=True, exist_ok=True)
