@@ -19,6 +19,7 @@ void append_nearby(const Map& map, KeyframeId reference, const LocalMapOptions& 
   const double max_angle = options.nearby_angle * std::numbers::pi / 180.0;
   std::vector<std::pair<double, KeyframeId>> nearby;
   for (const KeyframeId id : map.keyframe_ids()) {
+    if (map.keyframe(id).component != map.keyframe(reference).component) continue;
     const SE3& there = map.keyframe(id).world_from_camera;
     const double distance =
         translation_distance(here, there) / std::max(1e-9, options.nearby_distance);
@@ -90,10 +91,7 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId reference, std::uint64_t v
                             keyframe.frame->descriptors.type());
   for (const PointId id : local->ids) {
     const MapPoint& p = map.point(id);
-    const PointObservation& seen = p.observations[p.descriptor];
-    map.keyframe(seen.keyframe)
-        .frame->descriptors.row(static_cast<int>(seen.keypoint))
-        .copyTo(local->descriptors.row(static_cast<int>(local->positions.size())));
+    map.descriptor_of(id).copyTo(local->descriptors.row(static_cast<int>(local->positions.size())));
     local->positions.push_back(p.position);
     local->normals.push_back(p.normal);
     local->distances.push_back(p.distance);

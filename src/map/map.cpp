@@ -44,14 +44,14 @@ MapPoint& Map::mutable_point(PointId id) { return const_cast<MapPoint&>(point(id
 
 KeyframeId Map::add_keyframe(FramePtr frame, const SE3& world_from_camera, KeyframeId parent) {
   require(frame != nullptr, "a keyframe needs a frame");
-  require(parent == kNoId ? keyframe_count_ == 0 : has_keyframe(parent),
-          "the parent of a keyframe must be in the map");
+  require(parent == kNoId || has_keyframe(parent), "the parent of a keyframe must be in the map");
   auto keyframe = std::make_unique<Keyframe>();
   keyframe->id = static_cast<KeyframeId>(keyframes_.size());
   keyframe->points.assign(frame->size(), kNoId);
   keyframe->frame = std::move(frame);
   keyframe->world_from_camera = world_from_camera;
   keyframe->parent = parent;
+  keyframe->component = parent == kNoId ? component_count_++ : this->keyframe(parent).component;
   last_keyframe_ = keyframe->id;
   keyframes_.push_back(std::move(keyframe));
   removed_.emplace_back();
@@ -132,7 +132,7 @@ void Map::merge_points(PointId from, PointId to) {
 
 void Map::remove_keyframe(KeyframeId id) {
   const Keyframe& k = keyframe(id);
-  require(k.parent != kNoId, "the first keyframe of a map cannot be removed");
+  require(k.parent != kNoId, "the first keyframe of a component cannot be removed");
   for (const PointId p : std::vector<PointId>(k.points)) {
     if (p != kNoId) remove_observation(p, id);
   }
@@ -143,6 +143,38 @@ void Map::remove_keyframe(KeyframeId id) {
   if (last_keyframe_ == id) last_keyframe_ = k.parent;
   keyframes_[id].reset();
   --keyframe_count_;
+}
+
+void Map::join_components(KeyframeId parent, KeyframeId child,
+                          const SE3& parent_world_from_child_world) {
+  const std::uint32_t from = keyframe(child).component;
+  const std::uint32_t into = keyframe(parent).component;
+  require(from != into, "the keyframes to join must be of different components");
+  // Turn the tree around: every ancestor of `child` becomes its descendant.
+  KeyframeId above = parent;
+  for (KeyframeId id = child; id != kNoId;) {
+    const KeyframeId next = keyframe(id).parent;
+    mutable_keyframe(id).parent = above;
+    above = id;
+    id = next;
+  }
+  for (const auto& k : keyframes_) {
+    if (!k || k->component != from) continue;
+    k->component = into;
+    k->world_from_camera = parent_world_from_child_world * k->world_from_camera;
+    for (const PointId id : k->points) {
+      // A point is moved once, by the first keyframe that sees it.
+      if (id == kNoId || points_[id]->observations.front().keyframe != k->id) continue;
+      points_[id]->position = parent_world_from_child_world * points_[id]->position;
+      points_[id]->normal = parent_world_from_child_world.rotation() * points_[id]->normal;
+    }
+  }
+}
+
+cv::Mat Map::descriptor_of(PointId id) const {
+  const MapPoint& p = point(id);
+  const PointObservation& seen = p.observations[p.descriptor];
+  return keyframe(seen.keyframe).frame->descriptors.row(static_cast<int>(seen.keypoint));
 }
 
 void Map::set_pose(KeyframeId id, const SE3& world_from_camera) {

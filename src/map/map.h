@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace dxslam {
 /// Not thread-safe: one thread owns a map, others get snapshots (local_map.h).
 class Map {
  public:
-  /// Adds a keyframe without points. `parent` must exist, or be kNoId for the first one.
+  /// Adds a keyframe without points. `parent` must exist, or be kNoId for the first one of a new
+  /// component.
   KeyframeId add_keyframe(FramePtr frame, const SE3& world_from_camera, KeyframeId parent);
   /// Adds a point first seen by keypoint `keypoint` of `keyframe`, which must be free.
   PointId add_point(const Eigen::Vector3d& position, KeyframeId keyframe, std::uint32_t keypoint);
@@ -29,8 +31,14 @@ class Map {
   /// counters and removes `from`.
   void merge_points(PointId from, PointId to);
   /// Removes a keyframe and its observations; its children in the tree go to its parent, and its
-  /// pose relative to the parent stays on record (anchor_of). The first keyframe cannot be removed.
+  /// pose relative to the parent stays on record (anchor_of). The first keyframe of a component
+  /// cannot be removed.
   void remove_keyframe(KeyframeId keyframe);
+  /// Joins two components: moves the keyframes and points of the one of `child` by
+  /// `parent_world_from_child_world` and hangs its tree on `parent`, with `child` as the new joint.
+  /// Both must exist and be of different components.
+  void join_components(KeyframeId parent, KeyframeId child,
+                       const SE3& parent_world_from_child_world);
 
   bool has_keyframe(KeyframeId id) const {
     return id < keyframes_.size() && keyframes_[id] != nullptr;
@@ -54,6 +62,10 @@ class Map {
   std::size_t keyframe_count() const { return keyframe_count_; }
   std::size_t point_count() const { return point_count_; }
   KeyframeId last_keyframe() const { return last_keyframe_; }
+  /// Components ever started; some may have been joined to others.
+  std::uint32_t component_count() const { return component_count_; }
+  /// The descriptor that stands for a point: a row of the frame it was seen in.
+  cv::Mat descriptor_of(PointId id) const;
 
   /// The n keyframes that share most points with `id`, by falling number (ties: newer first).
   std::vector<Covisible> best_covisibles(KeyframeId id, std::size_t n, int min_shared) const;
@@ -81,6 +93,7 @@ class Map {
   std::size_t keyframe_count_ = 0;
   std::size_t point_count_ = 0;
   KeyframeId last_keyframe_ = kNoId;
+  std::uint32_t component_count_ = 0;
 };
 
 }  // namespace dxslam

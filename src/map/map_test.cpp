@@ -158,5 +158,50 @@ TEST(LocalMap, RespectsItsLimits) {
   EXPECT_LE(local->size(), 150U);
 }
 
+TEST(Map, JoinsComponentsWithoutChangingWhatEachSaysOfItself) {
+  const PointScene scene(400);
+  Map map;
+  const auto add = [&](int k, KeyframeId parent, const SE3& shift) {
+    std::vector<int> source;
+    const SE3 pose = PointScene::pose(0.1 * k);
+    const FramePtr frame = scene.frame(k, pose, 0.0, 1.0, &source);
+    const KeyframeId id = map.add_keyframe(frame, shift * pose, parent);
+    for (std::size_t i = 0; i < source.size(); i += 9) {
+      map.add_point(shift * scene.points()[static_cast<std::size_t>(source[i])], id,
+                    static_cast<std::uint32_t>(i));
+    }
+    return id;
+  };
+  const KeyframeId first = add(0, kNoId, SE3());
+  const KeyframeId second = add(1, first, SE3());
+  Vector6d tangent;
+  tangent << 1.0, -2.0, 0.5, 0.3, -0.4, 0.9;
+  const SE3 other_world = SE3::exp(tangent);
+  const KeyframeId root = add(2, kNoId, other_world);
+  const KeyframeId middle = add(3, root, other_world);
+  const KeyframeId leaf = add(4, middle, other_world);
+  EXPECT_EQ(map.keyframe(second).component, 0U);
+  EXPECT_EQ(map.keyframe(leaf).component, 1U);
+
+  map.join_components(second, middle, other_world.inverse());
+  expect_consistent(map);
+  EXPECT_EQ(map.keyframe(middle).parent, second);
+  EXPECT_EQ(map.keyframe(root).parent, middle);
+  EXPECT_EQ(map.keyframe(leaf).parent, middle);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& k = map.keyframe(id);
+    EXPECT_EQ(k.component, 0U);
+    EXPECT_LT((k.world_from_camera.inverse() * PointScene::pose(0.1 * k.frame->index)).log().norm(),
+              1e-9);
+    for (const PointId p : k.points) {
+      if (p == kNoId) continue;
+      const Eigen::Vector3d in_camera = k.world_from_camera.inverse() * map.point(p).position;
+      const auto keypoint = map.point(p).observations.front().keypoint;
+      EXPECT_NEAR(in_camera.z(), k.frame->depths[keypoint], 1e-3);
+    }
+  }
+  EXPECT_THROW(map.join_components(first, leaf, SE3()), ContractError);
+}
+
 }  // namespace
 }  // namespace dxslam

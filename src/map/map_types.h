@@ -47,7 +47,10 @@ struct Keyframe {
   SE3 world_from_camera;
   std::vector<PointId> points;        ///< one a keypoint; kNoId where there is none
   std::vector<Covisible> covisibles;  ///< by rising keyframe id
-  KeyframeId parent = kNoId;          ///< in the spanning tree; kNoId for the first
+  KeyframeId parent = kNoId;          ///< in the spanning tree; kNoId for a component's first
+  /// Keyframes of different components have no known pose relative to one another: each has a
+  /// world of its own (several maps, until a place is recognised and they are joined).
+  std::uint32_t component = 0;
 };
 
 }  // namespace dxslam

@@ -37,10 +37,7 @@ Candidates predict(const Map& map, const std::vector<PointId>& points, const Key
     const Eigen::Vector3d ray = target.world_from_camera.translation() - p.position;
     if (ray.dot(p.normal) < kMinViewCosine * ray.norm()) continue;
     const int row = static_cast<int>(candidates.points.size());
-    const PointObservation& seen = p.observations[p.descriptor];
-    map.keyframe(seen.keyframe)
-        .frame->descriptors.row(static_cast<int>(seen.keypoint))
-        .copyTo(candidates.descriptors.row(row));
+    map.descriptor_of(id).copyTo(candidates.descriptors.row(row));
     candidates.predictions.push_back(
         {row, pixel.cast<float>(), radius, static_cast<float>(in_camera.z())});
     candidates.points.push_back(id);
