@@ -159,7 +159,7 @@ TEST(LocalMap, RespectsItsLimits) {
 }
 
 TEST(Map, JoinsComponentsWithoutChangingWhatEachSaysOfItself) {
-  const PointScene scene(400);
+  PointScene scene(400);
   Map map;
   const auto add = [&](int k, KeyframeId parent, const SE3& shift) {
     std::vector<int> source;
@@ -191,7 +191,10 @@ TEST(Map, JoinsComponentsWithoutChangingWhatEachSaysOfItself) {
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& k = map.keyframe(id);
     EXPECT_EQ(k.component, 0U);
-    EXPECT_LT((k.world_from_camera.inverse() * PointScene::pose(0.1 * k.frame->index)).log().norm(),
+    EXPECT_LT((k.world_from_camera.inverse() *
+               PointScene::pose(0.1 * static_cast<double>(k.frame->index)))
+                  .log()
+                  .norm(),
               1e-9);
     for (const PointId p : k.points) {
       if (p == kNoId) continue;
