@@ -22,6 +22,9 @@ struct Features {
   cv::Mat descriptors;
   /// Global image descriptor of unit L2 norm; empty where the extractor has none or was not asked.
   std::vector<float> global;
+  /// What the extractor's global_of() makes the global descriptor of, later and if ever; its form
+  /// is the extractor's own. Empty unless keep_encoder() was asked for.
+  cv::Mat encoder;
 
   std::size_t size() const { return keypoints.size(); }
 };

@@ -23,6 +23,17 @@ class FeatureExtractor {
   /// Throws InputError if the image cannot be used.
   virtual Features extract(const cv::Mat& image, bool with_global) = 0;
 
+  /// Whether extract() fills Features::encoder from now on; off at first, and without effect where
+  /// there is no global descriptor. Costs a copy of some hundred kilobytes an image.
+  virtual void keep_encoder(bool keep) { (void)keep; }
+  /// The global descriptor of an image extracted before, from its Features::encoder: equal to what
+  /// extract() with the global descriptor gives. Empty where there is none. May be called from any
+  /// thread, also while another is inside extract(); calls of it wait for one another.
+  virtual std::vector<float> global_of(const cv::Mat& encoder) {
+    (void)encoder;
+    return {};
+  }
+
   /// What runs the extractor, e.g. "int8" or "f32"; "cpu" where there is no network.
   virtual std::string precision() const { return "cpu"; }
   /// Steps of the last extract() in order, e.g. preprocess, network, detect, describe.
