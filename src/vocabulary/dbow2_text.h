@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "vocabulary/vocabulary_tree.h"
+
+namespace dxslam {
+
+// The text format of DBoW2: a line "k L scoring weighting", then one line a node but the root,
+// "parent is_leaf d0 d1 ... weight", numbered from 1; words are numbered in the order of their
+// lines. Descriptors are bytes if those of the first node are integers of 0 to 255, else floats.
+
+/// Throws InputError with `where` and the line for anything else. Parents come before children.
+VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where);
+
+/// The text of a tree that has passed check_tree(). Words get the numbers of their lines, which are
+/// the word ids of the tree where these rise with the nodes.
+std::string format_dbow2_text(const VocabularyTree& tree);
+
+}  // namespace dxslam

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "vocabulary/word_search.h"
+
+#include <algorithm>
+#include <limits>
+
+// One source, several instruction sets: the loader picks the best the CPU has (ifunc). Sanitizers
+// start before ifuncs are resolved, so their builds take the portable version.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
+    defined(__GNUC__) && !defined(__clang__)
+#define DXSLAM_SIMD __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define DXSLAM_SIMD
+#endif
+#define DXSLAM_INLINE [[gnu::always_inline]] inline
+
+namespace dxslam {
+namespace {
+
+constexpr int kGroup = 8;           // descents side by side, so that memory is waited for together
+constexpr std::size_t kLine = 64;   // bytes of a cache line
+constexpr std::size_t kLanes = 16;  // floats of one AVX-512 register
+
+using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
+
+struct FloatDistance {
+  using Value = float;
+  DXSLAM_INLINE static float of(const std::uint8_t* a_bytes, const std::uint8_t* b_bytes,
+                                std::size_t dimension) {
+    const auto* a = reinterpret_cast<const float*>(a_bytes);
+    const auto* b = reinterpret_cast<const float*>(b_bytes);
+    Lanes sum = {};
+    std::size_t d = 0;
+    for (; d + kLanes <= dimension; d += kLanes) {
+      const Lanes difference =
+          *reinterpret_cast<const Lanes*>(a + d) - *reinterpret_cast<const Lanes*>(b + d);
+      sum += difference * difference;
+    }
+    float part[kLanes];
+    std::memcpy(part, &sum, sizeof(part));
+    for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
+      for (std::size_t i = 0; i < half; ++i) part[i] += part[i + half];
+    }
+    float total = part[0];
+    for (; d < dimension; ++d) total += (a[d] - b[d]) * (a[d] - b[d]);
+    return total;
+  }
+};
+
+struct BitDistance {
+  using Value = int;
+  DXSLAM_INLINE static int of(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
+    int bits = 0;
+    std::size_t k = 0;
+    for (; k + 8 <= bytes; k += 8) {
+      std::uint64_t x = 0;
+      std::uint64_t y = 0;
+      std::memcpy(&x, a + k, 8);
+      std::memcpy(&y, b + k, 8);
+      bits += __builtin_popcountll(x ^ y);
+    }
+    for (; k < bytes; ++k) bits += __builtin_popcount(static_cast<unsigned>(a[k] ^ b[k]));
+    return bits;
+  }
+};
+
+template <class Distance>
+DXSLAM_INLINE std::uint32_t nearest_child(const FbowImage& image, const std::uint8_t* block,
+                                          const std::uint8_t* descriptor) {
+  const std::size_t dimension = image.layout.dimension();
+  const std::uint32_t count = FbowImage::child_count(block);
+  const std::uint8_t* candidate = image.descriptor(block, 0);
+  std::uint32_t nearest = 0;
+  auto least = std::numeric_limits<typename Distance::Value>::max();
+  for (std::uint32_t i = 0; i < count; ++i, candidate += image.layout.descriptor_step) {
+    const auto distance = Distance::of(descriptor, candidate, dimension);
+    if (distance < least) {
+      least = distance;
+      nearest = i;
+    }
+  }
+  return nearest;
+}
+
+DXSLAM_INLINE void fetch_block(const FbowImage& image, const std::uint8_t* block) {
+  constexpr std::size_t kMost = 64 * kLine;
+  const std::size_t bytes = std::min(image.layout.block_step, kMost);
+  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(block + at);
+}
+
+template <class Distance>
+DXSLAM_INLINE void descend_group(const FbowImage& image, const std::uint8_t* const* rows, int count,
+                                 FbowImage::Child* found) {
+  const std::uint8_t* block[kGroup];
+  for (int r = 0; r < count; ++r) block[r] = image.block(0);
+  int left = count;
+  while (left > 0) {
+    for (int r = 0; r < count; ++r) {
+      if (block[r] == nullptr) continue;
+      const std::uint32_t nearest = nearest_child<Distance>(image, block[r], rows[r]);
+      found[r] = image.child(block[r], nearest);
+      if (found[r].is_word()) {
+        block[r] = nullptr;
+        --left;
+      } else {
+        block[r] = image.block(found[r].index());
+        fetch_block(image, block[r]);
+      }
+    }
+  }
+}
+
+DXSLAM_SIMD void descend_floats(const FbowImage& image, const std::uint8_t* const* rows, int count,
+                                FbowImage::Child* found) {
+  descend_group<FloatDistance>(image, rows, count, found);
+}
+
+DXSLAM_SIMD void descend_bits(const FbowImage& image, const std::uint8_t* const* rows, int count,
+                              FbowImage::Child* found) {
+  descend_group<BitDistance>(image, rows, count, found);
+}
+
+}  // namespace
+
+void search_words(const FbowImage& image, const cv::Mat& descriptors, FbowImage::Child* found) {
+  for (int i = 0; i < descriptors.rows; i += kGroup) {
+    const int count = std::min(kGroup, descriptors.rows - i);
+    const std::uint8_t* rows[kGroup];
+    for (int r = 0; r < count; ++r) rows[r] = descriptors.ptr(i + r);
+    if (image.layout.binary) {
+      descend_bits(image, rows, count, found + i);
+    } else {
+      descend_floats(image, rows, count, found + i);
+    }
+  }
+}
+
+}  // namespace dxslam
