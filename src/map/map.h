@@ -11,11 +11,18 @@
 
 namespace dxslam {
 
+struct MapParts;
+
 /// Keyframes and points, and who sees what. The map owns both, in dense storage indexed by id, and
 /// is the only place that changes observations and covisibility, so that the two always agree.
 /// Not thread-safe: one thread owns a map, others get snapshots (local_map.h).
 class Map {
  public:
+  Map() = default;
+  /// Puts a map together again (map_parts.h): what the points say of their observations is taken as
+  /// it is and the rest follows, without looking at descriptors. Throws ContractError naming the
+  /// first relation that does not hold.
+  explicit Map(MapParts parts);
   /// Adds a keyframe without points. `parent` must exist, or be kNoId for the first one of a new
   /// component.
   KeyframeId add_keyframe(FramePtr frame, const SE3& world_from_camera, KeyframeId parent);
@@ -86,6 +93,8 @@ class Map {
   Keyframe& mutable_keyframe(KeyframeId id);
   MapPoint& mutable_point(PointId id);
   void change_covisibility(const MapPoint& point, KeyframeId keyframe, int change);
+  void bind_observations(const MapPoint& point);
+  void count_covisibility();
 
   std::vector<std::unique_ptr<Keyframe>> keyframes_;  // by id; null where removed
   std::vector<std::optional<MapPoint>> points_;       // by id; empty where removed
