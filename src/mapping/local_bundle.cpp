@@ -91,6 +91,17 @@ class BundleBuilder {
   std::unordered_map<PointId, int> point_of_;
 };
 
+LocalBundle gather_bundle_of(const Map& map, const std::vector<KeyframeId>& ids,
+                             const Camera& camera) {
+  BundleBuilder builder(map, camera);
+  for (const KeyframeId id : ids) {
+    if (map.keyframe(id).parent != kNoId) builder.add_keyframe(id, false);
+  }
+  for (const KeyframeId id : ids) builder.add_keyframe(id, map.keyframe(id).parent == kNoId);
+  for (const KeyframeId id : ids) builder.add_points_of(id);
+  return builder.finish();
+}
+
 }  // namespace
 
 LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe, const Camera& camera,
@@ -115,14 +126,14 @@ LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe, const Camer
 }
 
 LocalBundle gather_full_bundle(const Map& map, const Camera& camera) {
-  BundleBuilder builder(map, camera);
-  const std::vector<KeyframeId> ids = map.keyframe_ids();
-  for (const KeyframeId id : ids) {
-    if (map.keyframe(id).parent != kNoId) builder.add_keyframe(id, false);
-  }
-  for (const KeyframeId id : ids) builder.add_keyframe(id, map.keyframe(id).parent == kNoId);
-  for (const KeyframeId id : ids) builder.add_points_of(id);
-  return builder.finish();
+  return gather_bundle_of(map, map.keyframe_ids(), camera);
+}
+
+LocalBundle gather_component_bundle(const Map& map, std::uint32_t component, const Camera& camera) {
+  std::vector<KeyframeId> ids = map.keyframe_ids();
+  const auto elsewhere = [&](KeyframeId id) { return map.keyframe(id).component != component; };
+  ids.erase(std::remove_if(ids.begin(), ids.end(), elsewhere), ids.end());
+  return gather_bundle_of(map, ids, camera);
 }
 
 int apply_local_bundle(const LocalBundle& bundle, const BundleReport& report, Map& map) {

@@ -24,8 +24,10 @@ struct LocalBundle {
 LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe, const Camera& camera,
                                 const MappingOptions& options);
 
-/// All keyframes and points; the first keyframe is held.
+/// All keyframes and points; the first keyframe of each component is held.
 LocalBundle gather_full_bundle(const Map& map, const Camera& camera);
+/// All keyframes and points of one component; its first keyframe is held.
+LocalBundle gather_component_bundle(const Map& map, std::uint32_t component, const Camera& camera);
 
 /// Writes the result back and unbinds the observations that failed their gate; returns how many.
 int apply_local_bundle(const LocalBundle& bundle, const BundleReport& report, Map& map);

@@ -57,7 +57,6 @@ class LocalMapper {
   int create_points_from_depth(KeyframeId keyframe);
   int create_points_by_triangulation(KeyframeId keyframe);
   int fuse_with_neighbours(KeyframeId keyframe);
-  int fuse_points(const std::vector<PointId>& points, KeyframeId target);
   int cull_recent_points();
   int cull_keyframes(KeyframeId newest);
   void adjust_local_bundle(KeyframeId keyframe, MappingReport& report);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
+#include "mapping/point_fusion.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,7 +10,7 @@
 #include "mapping/local_mapper.h"
 #include "matching/guided_matching.h"
 
-// How LocalMapper binds the points of neighbouring keyframes to each other.
+// How points of neighbouring keyframes are bound to each other.
 
 namespace dxslam {
 namespace {
@@ -50,14 +52,6 @@ bool sees(const MapPoint& point, KeyframeId keyframe) {
                      [&](const PointObservation& o) { return o.keyframe == keyframe; });
 }
 
-std::vector<PointId> points_seen(const Map& map, KeyframeId keyframe) {
-  std::vector<PointId> points;
-  for (const PointId p : map.keyframe(keyframe).points) {
-    if (p != kNoId) points.push_back(p);
-  }
-  return points;
-}
-
 // Keypoints that could get a point by triangulation: of a keyframe, those without one.
 std::vector<int> free_keypoints(const Keyframe& keyframe, bool without_depth_only) {
   std::vector<int> free;
@@ -79,15 +73,56 @@ cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& rows) {
 
 }  // namespace
 
+std::vector<PointId> points_seen(const Map& map, KeyframeId keyframe) {
+  std::vector<PointId> points;
+  for (const PointId p : map.keyframe(keyframe).points) {
+    if (p != kNoId) points.push_back(p);
+  }
+  return points;
+}
+
+int fuse_points(const std::vector<PointId>& points, KeyframeId target_id, const Camera& camera,
+                const PointFusion& fusion, Map& map) {
+  const Keyframe& target = map.keyframe(target_id);
+  std::vector<PointId> unseen;
+  for (const PointId p : points) {
+    if (map.has_point(p) && !sees(map.point(p), target_id)) unseen.push_back(p);
+  }
+  const float radius = static_cast<float>(fusion.radius * camera.width / 640.0);
+  const Candidates candidates = predict(map, unseen, target, camera, radius);
+  const KeypointGrid grid(target.frame->pixels);
+  const GuidedMatchingOptions matching{fusion.traits.max_distance, static_cast<float>(fusion.ratio),
+                                       static_cast<float>(fusion.depth_tolerance)};
+  int fused = 0;
+  for (const Match& m : match_guided(candidates.predictions, candidates.descriptors, *target.frame,
+                                     grid, {}, matching)) {
+    const PointId point = candidates.points[static_cast<std::size_t>(m.a)];
+    if (!map.has_point(point)) continue;  // merged by an earlier match
+    const PointId present = target.points[static_cast<std::size_t>(m.b)];
+    if (present == kNoId) {
+      if (!map.add_observation(point, target_id, static_cast<std::uint32_t>(m.b))) continue;
+      map.refresh_point(point);
+    } else if (present != point) {
+      const bool keep_present =
+          map.point(present).observations.size() >= map.point(point).observations.size();
+      map.merge_points(keep_present ? point : present, keep_present ? present : point);
+    }
+    ++fused;
+  }
+  return fused;
+}
+
 int LocalMapper::fuse_with_neighbours(KeyframeId keyframe) {
   std::vector<KeyframeId> neighbours = local_keyframes(map_, keyframe, options_.local_map);
   neighbours.erase(neighbours.begin());
   if (neighbours.size() > static_cast<std::size_t>(options_.fuse_keyframes)) {
     neighbours.resize(static_cast<std::size_t>(options_.fuse_keyframes));
   }
+  const PointFusion fusion{options_.fuse_radius, options_.fuse_ratio, options_.fuse_depth_tolerance,
+                           traits_};
   int fused = 0;
   for (const KeyframeId neighbour : neighbours) {
-    fused += fuse_points(points_seen(map_, keyframe), neighbour);
+    fused += fuse_points(points_seen(map_, keyframe), neighbour, camera_, fusion, map_);
   }
   std::vector<PointId> points;
   for (const KeyframeId neighbour : neighbours) {
@@ -96,38 +131,7 @@ int LocalMapper::fuse_with_neighbours(KeyframeId keyframe) {
   }
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  return fused + fuse_points(points, keyframe);
-}
-
-int LocalMapper::fuse_points(const std::vector<PointId>& points, KeyframeId target_id) {
-  const Keyframe& target = map_.keyframe(target_id);
-  std::vector<PointId> unseen;
-  for (const PointId p : points) {
-    if (!sees(map_.point(p), target_id)) unseen.push_back(p);
-  }
-  const float radius = static_cast<float>(options_.fuse_radius * camera_.width / 640.0);
-  const Candidates candidates = predict(map_, unseen, target, camera_, radius);
-  const KeypointGrid grid(target.frame->pixels);
-  const GuidedMatchingOptions matching{traits_.max_distance,
-                                       static_cast<float>(options_.fuse_ratio),
-                                       static_cast<float>(options_.fuse_depth_tolerance)};
-  int fused = 0;
-  for (const Match& m : match_guided(candidates.predictions, candidates.descriptors, *target.frame,
-                                     grid, {}, matching)) {
-    const PointId point = candidates.points[static_cast<std::size_t>(m.a)];
-    if (!map_.has_point(point)) continue;  // merged by an earlier match
-    const PointId present = target.points[static_cast<std::size_t>(m.b)];
-    if (present == kNoId) {
-      if (!map_.add_observation(point, target_id, static_cast<std::uint32_t>(m.b))) continue;
-      map_.refresh_point(point);
-    } else if (present != point) {
-      const bool keep_present =
-          map_.point(present).observations.size() >= map_.point(point).observations.size();
-      map_.merge_points(keep_present ? point : present, keep_present ? present : point);
-    }
-    ++fused;
-  }
-  return fused;
+  return fused + fuse_points(points, keyframe, camera_, fusion, map_);
 }
 
 int LocalMapper::create_points_by_triangulation(KeyframeId keyframe) {
