@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "loop_closing/loop_verification.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "loop_closing/keyframe_group.h"
+#include "matching/guided_matching.h"
+
+namespace dxslam {
+namespace {
+
+constexpr int kColumns = 8;  // of the grid on which spread is counted
+constexpr int kRows = 6;
+constexpr double kMinViewCosine = 0.5;  // farther round, a point is taken for unseen
+constexpr double kMaxDistanceRatio = 2.5;
+constexpr int kMinExpected = 20;  // points in view of a neighbour that is worth asking
+
+int shared_points(const Keyframe& keyframe, KeyframeId other) {
+  for (const Covisible& c : keyframe.covisibles) {
+    if (c.keyframe == other) return c.shared;
+  }
+  return 0;
+}
+
+class LoopVerifier {
+ public:
+  LoopVerifier(const Map& map, const Camera& camera, const DescriptorTraits& traits,
+               const LoopVerificationOptions& options)
+      : map_(map), camera_(camera), traits_(traits), options_(options) {}
+
+  LoopVerification run(KeyframeId query, KeyframeId candidate) {
+    report_.query = query;
+    report_.candidate = candidate;
+    using Step = LoopRejection (LoopVerifier::*)();
+    constexpr std::array<Step, 6> kSteps = {&LoopVerifier::gather,   &LoopVerifier::match,
+                                            &LoopVerifier::estimate, &LoopVerifier::refine,
+                                            &LoopVerifier::judge,    &LoopVerifier::confirm};
+    for (const Step step : kSteps) {
+      report_.rejection = (this->*step)();
+      if (report_.rejection != LoopRejection::kNone) return report_;
+    }
+    report_.accepted = true;
+    report_.candidate_from_query =
+        map_.keyframe(candidate).world_from_camera.inverse() * world_from_query_;
+    report_.scale = scale();
+    return report_;
+  }
+
+ private:
+  LoopRejection gather() {
+    require(map_.has_keyframe(report_.query), "the query of a loop must be in the map");
+    if (!map_.has_keyframe(report_.candidate)) return LoopRejection::kGone;
+    const Keyframe& query = map_.keyframe(report_.query);
+    if (report_.query == report_.candidate ||
+        shared_points(query, report_.candidate) >= options_.max_shared) {
+      return LoopRejection::kConnected;
+    }
+    const KeyframeGroup group =
+        gather_group(map_, report_.candidate, static_cast<std::size_t>(options_.group_keyframes),
+                     options_.group_min_shared, static_cast<std::size_t>(options_.max_points));
+    std::vector<PointId> own = query.points;
+    std::sort(own.begin(), own.end());
+    for (const PointId p : group.points) {
+      // What the query sees already would confirm the map's own belief, right or wrong.
+      if (!std::binary_search(own.begin(), own.end(), p)) points_.push_back(p);
+    }
+    descriptors_.create(static_cast<int>(points_.size()), query.frame->descriptors.cols,
+                        query.frame->descriptors.type());
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      map_.descriptor_of(points_[i]).copyTo(descriptors_.row(static_cast<int>(i)));
+    }
+    report_.points = static_cast<int>(points_.size());
+    return report_.points < options_.min_matches ? LoopRejection::kFewPoints : LoopRejection::kNone;
+  }
+
+  LoopRejection match() {
+    // Points in the first place: one that is in the map twice must not spoil the ratio test.
+    matches_ = match_mutual(descriptors_, query_frame().descriptors, traits_.max_distance,
+                            static_cast<float>(options_.ratio));
+    report_.matches = static_cast<int>(matches_.size());
+    return report_.matches < options_.min_matches ? LoopRejection::kFewMatches
+                                                  : LoopRejection::kNone;
+  }
+
+  LoopRejection estimate() {
+    const Frame& frame = query_frame();
+    std::vector<Eigen::Vector3d> positions;
+    std::vector<Eigen::Vector2d> pixels;
+    std::vector<float> depths;
+    for (const Match& m : matches_) {
+      positions.push_back(point(m.a).position);
+      pixels.push_back(frame.pixels[static_cast<std::size_t>(m.b)].cast<double>());
+      depths.push_back(frame.depths[static_cast<std::size_t>(m.b)]);
+    }
+    const std::optional<PnpReport> pnp =
+        solve_pnp(camera_, positions, pixels, depths, options_.pnp);
+    if (!pnp) return LoopRejection::kNoPose;
+    report_.pose_inliers = pnp->inliers;
+    world_from_query_ = pnp->world_from_camera;
+    return LoopRejection::kNone;
+  }
+
+  LoopRejection refine() {
+    const KeypointGrid grid(query_frame().pixels);
+    for (const double share : {1.0, 0.5}) {
+      const std::vector<PixelPrediction> predictions =
+          predict(world_from_query_, share * options_.search_radius);
+      report_.expected = static_cast<int>(predictions.size());
+      matches_ = match_guided(predictions, descriptors_, query_frame(), grid, {}, guided());
+      for (Match& m : matches_) {
+        m.a = predictions[static_cast<std::size_t>(m.a)].descriptor_row;
+      }
+      report_.guided_matches = static_cast<int>(matches_.size());
+      const PoseReport pose =
+          optimize_pose(camera_, world_from_query_, observations(), options_.pose);
+      if (!pose.success) return LoopRejection::kNoPose;
+      world_from_query_ = pose.world_from_camera;
+      report_.inliers = pose.inliers;
+      report_.rms_pixels = pose.rms_pixels;
+      inlier_ = pose.inlier;
+    }
+    return LoopRejection::kNone;
+  }
+
+  LoopRejection judge() {
+    collect_inliers();
+    report_.found_share = found_share(report_.inliers, report_.expected, query_frame());
+    report_.depth_share = depth_share();
+    if (report_.inliers < options_.min_inliers) return LoopRejection::kFewInliers;
+    if (report_.inliers < options_.min_inlier_ratio * report_.guided_matches) {
+      return LoopRejection::kManyOutliers;
+    }
+    if (report_.found_share < options_.min_found_share) return LoopRejection::kFewFound;
+    if (report_.cells < options_.min_cells) return LoopRejection::kNarrow;
+    if (report_.depth_share < options_.min_depth_share) return LoopRejection::kDepth;
+    return LoopRejection::kNone;
+  }
+
+  // A pose that only one image speaks for is chance or a picture on another wall.
+  LoopRejection confirm() {
+    const SE3 correction =
+        world_from_query_ * map_.keyframe(report_.query).world_from_camera.inverse();
+    for (const Covisible& c : map_.best_covisibles(
+             report_.query, static_cast<std::size_t>(options_.confirming_keyframes),
+             options_.group_min_shared)) {
+      const Keyframe& neighbour = map_.keyframe(c.keyframe);
+      const std::vector<PixelPrediction> predictions =
+          predict(correction * neighbour.world_from_camera, 0.5 * options_.search_radius);
+      const int expected = static_cast<int>(predictions.size());
+      if (expected < kMinExpected) continue;
+      ++report_.confirming;
+      const KeypointGrid grid(neighbour.frame->pixels);
+      const int found = static_cast<int>(
+          match_guided(predictions, descriptors_, *neighbour.frame, grid, {}, guided()).size());
+      if (found_share(found, expected, *neighbour.frame) >= options_.min_found_share) {
+        ++report_.confirmations;
+      }
+    }
+    return report_.confirmations < std::min(options_.min_confirmations, report_.confirming)
+               ? LoopRejection::kUnconfirmed
+               : LoopRejection::kNone;
+  }
+
+  const Frame& query_frame() const { return *map_.keyframe(report_.query).frame; }
+  const MapPoint& point(int row) const {
+    return map_.point(points_[static_cast<std::size_t>(row)]);
+  }
+  GuidedMatchingOptions guided() const {
+    return {traits_.max_distance, static_cast<float>(options_.search_ratio), 0.0F};
+  }
+
+  // Depths are left out of the search, so that they can bear witness afterwards.
+  std::vector<PixelPrediction> predict(const SE3& world_from_camera, double radius) const {
+    const SE3 camera_from_world = world_from_camera.inverse();
+    const float pixels = static_cast<float>(radius * camera_.width / 640.0);
+    std::vector<PixelPrediction> predictions;
+    for (int row = 0; row < descriptors_.rows; ++row) {
+      const MapPoint& p = point(row);
+      const Eigen::Vector3d in_camera = camera_from_world * p.position;
+      if (in_camera.z() <= 0.05) continue;
+      const Eigen::Vector2d pixel = camera_.project(in_camera);
+      if (!camera_.contains(pixel)) continue;
+      const Eigen::Vector3d ray = world_from_camera.translation() - p.position;
+      const double distance = ray.norm();
+      if (ray.dot(p.normal) < kMinViewCosine * distance) continue;
+      const double usual = static_cast<double>(p.distance);
+      if (distance > kMaxDistanceRatio * usual || usual > kMaxDistanceRatio * distance) continue;
+      predictions.push_back({row, pixel.cast<float>(), pixels, 0.0F});
+    }
+    return predictions;
+  }
+
+  bool depth_agrees(const Match& m) const {
+    const double measured =
+        static_cast<double>(query_frame().depths[static_cast<std::size_t>(m.b)]);
+    const double z = (world_from_query_.inverse() * point(m.a).position).z();
+    return std::abs(z - measured) <= options_.depth_tolerance * z;
+  }
+
+  std::vector<PoseObservation> observations() const {
+    const Frame& frame = query_frame();
+    std::vector<PoseObservation> observations;
+    for (const Match& m : matches_) {
+      const auto k = static_cast<std::size_t>(m.b);
+      // Beside an edge the pixel may be right where the depth is that of another surface.
+      const bool use_depth = frame.has_depth(k) && depth_agrees(m);
+      observations.push_back({point(m.a).position, frame.pixels[k].cast<double>(),
+                              use_depth ? camera_.bf() / static_cast<double>(frame.depths[k]) : 0.0,
+                              static_cast<double>(frame.sigmas[k])});
+    }
+    return observations;
+  }
+
+  void collect_inliers() {
+    std::array<bool, kColumns * kRows> filled{};
+    for (std::size_t i = 0; i < matches_.size(); ++i) {
+      if (inlier_[i] == 0) continue;
+      const auto k = static_cast<std::size_t>(matches_[i].b);
+      report_.inlier_matches.push_back(
+          {static_cast<std::uint32_t>(k), points_[static_cast<std::size_t>(matches_[i].a)]});
+      const Eigen::Vector2f& pixel = query_frame().pixels[k];
+      const int x = static_cast<int>(pixel.x() / static_cast<float>(camera_.width) * kColumns);
+      const int y = static_cast<int>(pixel.y() / static_cast<float>(camera_.height) * kRows);
+      filled[static_cast<std::size_t>(std::clamp(y, 0, kRows - 1) * kColumns +
+                                      std::clamp(x, 0, kColumns - 1))] = true;
+    }
+    report_.cells = static_cast<int>(std::count(filled.begin(), filled.end(), true));
+    std::sort(report_.inlier_matches.begin(), report_.inlier_matches.end(),
+              [](const LoopMatch& a, const LoopMatch& b) { return a.keypoint < b.keypoint; });
+  }
+
+  static double found_share(int found, int expected, const Frame& frame) {
+    const int possible = std::min(expected, static_cast<int>(frame.size()));
+    return possible > 0 ? static_cast<double>(found) / possible : 0.0;
+  }
+
+  // Of the matches that lie at their pixel and have a depth.
+  double depth_share() const {
+    const Frame& frame = query_frame();
+    const SE3 camera_from_world = world_from_query_.inverse();
+    int measured = 0;
+    int agreeing = 0;
+    for (const Match& m : matches_) {
+      const auto k = static_cast<std::size_t>(m.b);
+      if (!frame.has_depth(k)) continue;
+      const Eigen::Vector3d in_camera = camera_from_world * point(m.a).position;
+      const double error2 =
+          (camera_.project(in_camera) - frame.pixels[k].cast<double>()).squaredNorm();
+      const double sigma = static_cast<double>(frame.sigmas[k]);
+      if (in_camera.z() <= 0.0 || error2 > options_.pose.chi2_pixel * sigma * sigma) continue;
+      ++measured;
+      if (depth_agrees(m)) ++agreeing;
+    }
+    return measured > 0 ? static_cast<double>(agreeing) / measured : 1.0;
+  }
+
+  // Median ratio of the distances of points that the query has, too.
+  double scale() const {
+    const Keyframe& query = map_.keyframe(report_.query);
+    const SE3 query_from_world = query.world_from_camera.inverse();
+    const SE3 query_from_candidate_world = world_from_query_.inverse();
+    std::vector<double> ratios;
+    for (const LoopMatch& m : report_.inlier_matches) {
+      const PointId own = query.points[m.keypoint];
+      if (own == kNoId) continue;
+      const double here = (query_from_world * map_.point(own).position).norm();
+      const double there = (query_from_candidate_world * map_.point(m.point).position).norm();
+      if (here > 0.0) ratios.push_back(there / here);
+    }
+    if (ratios.empty()) return 1.0;
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    return *middle;
+  }
+
+  const Map& map_;
+  const Camera& camera_;
+  const DescriptorTraits& traits_;
+  const LoopVerificationOptions& options_;
+  LoopVerification report_;
+  std::vector<PointId> points_;  // of the candidate's group, less those that the query sees
+  cv::Mat descriptors_;          // one row a point
+  std::vector<Match> matches_;   // a: row of the point, b: keypoint of the query
+  std::vector<char> inlier_;     // one a match
+  SE3 world_from_query_;         // in the candidate's world
+};
+
+}  // namespace
+
+const char* describe(LoopRejection rejection) {
+  switch (rejection) {
+    case LoopRejection::kNone:
+      return "accepted";
+    case LoopRejection::kGone:
+      return "the candidate is no longer in the map";
+    case LoopRejection::kConnected:
+      return "the two share points already";
+    case LoopRejection::kFewPoints:
+      return "too few points around the candidate";
+    case LoopRejection::kFewMatches:
+      return "too few descriptors match";
+    case LoopRejection::kNoPose:
+      return "the matches agree on no pose";
+    case LoopRejection::kFewInliers:
+      return "too few points lie where the pose puts them";
+    case LoopRejection::kManyOutliers:
+      return "too many matches lie beside their pixel";
+    case LoopRejection::kFewFound:
+      return "most points that should be in view were not found";
+    case LoopRejection::kNarrow:
+      return "what was found fills too little of the image";
+    case LoopRejection::kDepth:
+      return "measured depths contradict the pose";
+    case LoopRejection::kUnconfirmed:
+      return "the neighbours of the query do not see the place";
+  }
+  return "";
+}
+
+LoopVerification verify_loop(const Map& map, KeyframeId query, KeyframeId candidate,
+                             const Camera& camera, const DescriptorTraits& traits,
+                             const LoopVerificationOptions& options) {
+  return LoopVerifier(map, camera, traits, options).run(query, candidate);
+}
+
+}  // namespace dxslam
