@@ -165,6 +165,26 @@ void check_leaves(const VocabularyTree& tree, const std::vector<char>& leaf,
   }
 }
 
+// Inner nodes first, then the words by their ids, which the format numbers by their lines.
+std::vector<std::uint32_t> line_order(const VocabularyTree& tree) {
+  std::vector<std::uint32_t> inner;
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
+    (tree.is_word(i) ? words : inner).push_back(i);
+  }
+  std::stable_sort(words.begin(), words.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return tree.nodes[a].word < tree.nodes[b].word;
+  });
+  inner.insert(inner.end(), words.begin(), words.end());
+  return inner;
+}
+
+int depth_of(const VocabularyTree& tree) {
+  std::vector<int> level(tree.nodes.size(), 0);
+  for (std::size_t i = 1; i < tree.nodes.size(); ++i) level[i] = level[tree.nodes[i].parent] + 1;
+  return *std::max_element(level.begin(), level.end());
+}
+
 }  // namespace
 
 VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where) {
@@ -200,15 +220,16 @@ VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where)
 }
 
 std::string format_dbow2_text(const VocabularyTree& tree) {
-  std::vector<int> level(tree.nodes.size(), 0);
-  for (std::size_t i = 1; i < tree.nodes.size(); ++i) level[i] = level[tree.nodes[i].parent] + 1;
+  const std::vector<std::uint32_t> order = line_order(tree);
+  std::vector<std::uint32_t> line_of(tree.nodes.size(), 0);
+  for (std::uint32_t line = 0; line < order.size(); ++line) line_of[order[line]] = line;
   std::string text;
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "{} {} 0 0\n", tree.branching, *std::max_element(level.begin(), level.end()));
-  for (std::size_t i = 1; i < tree.nodes.size(); ++i) {
-    const VocabularyTree::Node& node = tree.nodes[i];
-    const int row = static_cast<int>(i);
-    fmt::format_to(out, "{} {}", node.parent, tree.is_word(i) ? 1 : 0);
+  fmt::format_to(out, "{} {} 0 0\n", tree.branching, depth_of(tree));
+  for (std::size_t line = 1; line < order.size(); ++line) {
+    const VocabularyTree::Node& node = tree.nodes[order[line]];
+    const int row = static_cast<int>(order[line]);
+    fmt::format_to(out, "{} {}", line_of[node.parent], node.children.empty() ? 1 : 0);
     for (int d = 0; d < tree.descriptors.cols; ++d) {
       if (tree.descriptors.depth() == CV_8U) {
         fmt::format_to(out, " {}", tree.descriptors.at<std::uint8_t>(row, d));

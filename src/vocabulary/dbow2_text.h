@@ -16,8 +16,8 @@ namespace dxslam {
 /// Throws InputError with `where` and the line for anything else. Parents come before children.
 VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where);
 
-/// The text of a tree that has passed check_tree(). Words get the numbers of their lines, which are
-/// the word ids of the tree where these rise with the nodes.
+/// The text of a tree that has passed check_tree(). Word ids stay as they are if they are distinct,
+/// else words are numbered anew.
 std::string format_dbow2_text(const VocabularyTree& tree);
 
 }  // namespace dxslam

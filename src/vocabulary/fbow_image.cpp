@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <new>
 #include <vector>
 
 #include "core/error.h"
+#include "vocabulary/checksum.h"
 #include "vocabulary/vocabulary_tree.h"
 
 namespace dxslam {
@@ -55,33 +55,6 @@ void put(std::uint8_t* bytes, std::size_t offset, Value value) {
 
 std::size_t round_up(std::size_t n, std::size_t multiple) {
   return (n + multiple - 1) / multiple * multiple;
-}
-
-// Two running sums in each of eight lanes, so that neither a changed nor a moved word goes
-// unnoticed; at the speed of memory.
-std::uint64_t checksum(std::string_view bytes) {
-  constexpr std::size_t kLanes = 8;
-  std::array<std::uint64_t, kLanes> first{};
-  std::array<std::uint64_t, kLanes> second{};
-  std::size_t at = 0;
-  std::array<std::uint64_t, kLanes> words{};
-  for (; at + sizeof(words) <= bytes.size(); at += sizeof(words)) {
-    std::memcpy(words.data(), bytes.data() + at, sizeof(words));
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      first[i] += words[i];
-      second[i] += first[i];
-    }
-  }
-  words.fill(0);
-  std::memcpy(words.data(), bytes.data() + at, bytes.size() - at);
-  std::uint64_t hash = bytes.size();
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    for (const std::uint64_t part : {words[i], first[i], second[i]}) {
-      hash = (hash ^ part) * 0x9e3779b97f4a7c15U;
-      hash ^= hash >> 29U;
-    }
-  }
-  return hash;
 }
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {
@@ -161,7 +134,7 @@ void check_end(FbowImage& image, const std::string& where) {
     refuse(where, fmt::format("has {} bytes behind its {} blocks, expected none or a checksum",
                               rest, image.layout.blocks));
   }
-  if (get<std::uint64_t>(image.file, end + 8) != checksum(image.file.substr(0, end))) {
+  if (get<std::uint64_t>(image.file, end + 8) != fast_checksum(image.file.substr(0, end))) {
     refuse(where, "does not have the checksum it was written with, the file is damaged");
   }
   image.has_checksum = true;
@@ -331,7 +304,7 @@ std::shared_ptr<const FbowImage> pack_tree(const VocabularyTree& tree) {
   }
   const std::string_view file(reinterpret_cast<const char*>(bytes.get()), end + kChecksumBytes);
   put(bytes.get(), end, kChecksumMagic);
-  put(bytes.get(), end + 8, checksum(file.substr(0, end)));
+  put(bytes.get(), end + 8, fast_checksum(file.substr(0, end)));
   return parse_fbow(file, bytes, "vocabulary in memory");
 }
 

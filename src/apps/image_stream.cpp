@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/image_stream.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <regex>
+
+#include "core/error.h"
+#include "io/image_file.h"
+#include "io/low_light.h"
+#include "io/sequence_reader.h"
+
+namespace dxslam::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Part {
+  std::string folder;
+  std::size_t first = 0;
+  std::size_t end = std::numeric_limits<std::size_t>::max();
+};
+
+Part parse_part(const std::string& source) {
+  static const std::regex kPart("(.+)@([0-9]{1,9})?:([0-9]{1,9})?");
+  std::smatch match;
+  if (fs::exists(source) || !std::regex_match(source, match, kPart)) return {source};
+  Part part{match[1]};
+  if (match[2].matched) part.first = std::stoul(match[2]);
+  if (match[3].matched) part.end = std::stoul(match[3]);
+  return part;
+}
+
+bool is_photo(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = path.filename().string();
+  const bool of_recording =
+      name.find(".color.") != std::string::npos || name.find(".depth.") != std::string::npos;
+  return (extension == ".jpg" || extension == ".jpeg" || extension == ".png") && !of_recording;
+}
+
+// Images that lie directly in a folder; recordings keep theirs in folders below it.
+std::vector<std::string> photos_in(const std::string& folder) {
+  std::vector<std::string> photos;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (is_photo(entry.path())) photos.push_back(entry.path().string());
+  }
+  std::sort(photos.begin(), photos.end());
+  return photos;
+}
+
+}  // namespace
+
+ImageStream::ImageStream(const std::vector<std::string>& sources, std::size_t stride) {
+  for (const std::string& source : sources) add_source(source, stride);
+}
+
+void ImageStream::add_source(const std::string& source, std::size_t stride) {
+  const Part part = parse_part(source);
+  const std::vector<std::string> photos = photos_in(part.folder);
+  const std::size_t count = photos.empty() ? open_sequence(part.folder)->size() : photos.size();
+  if (part.first >= std::min(count, part.end)) {
+    throw InputError(
+        fmt::format("{}: has {} images, expected some in the part asked for", source, count));
+  }
+  for (std::size_t i = part.first; i < std::min(count, part.end); i += stride) {
+    images_.push_back({folders_.size(), i, photos.empty() ? std::string() : photos[i]});
+  }
+  folders_.push_back(part.folder);
+}
+
+void ImageStream::skip(const std::string& reason) {
+  if (skipped_++ == 0) first_skipped_ = reason;
+}
+
+void ImageStream::visit(std::size_t start,
+                        const std::function<bool(std::size_t, const Item&)>& visit) {
+  std::unique_ptr<RgbdSequence> sequence;
+  std::size_t open_source = folders_.size();
+  for (std::size_t i = start; i < images_.size(); ++i) {
+    const Image& image = images_[i];
+    Item item;
+    item.photo = !image.photo.empty();
+    item.first = item.photo || i == 0 || images_[i - 1].source != image.source;
+    if (item.photo) {
+      try {
+        item.image = read_color_image(image.photo);
+      } catch (const InputError& error) {
+        skip(error.what());
+        continue;
+      }
+    } else {
+      if (image.source != open_source) sequence = open_sequence(folders_[image.source]);
+      open_source = image.source;
+      const std::optional<RgbdImage> frame = sequence->read(image.index);
+      if (!frame) {
+        skip(sequence->skipped().back().reason);
+        continue;
+      }
+      item.image = frame->color;
+    }
+    if (!visit(i, item)) return;
+  }
+}
+
+cv::Mat changed_view(const cv::Mat& photo, unsigned seed) {
+  constexpr double kShift = 0.08;  // of a corner, in image sizes
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> shift(-kShift, kShift);
+  const auto width = static_cast<float>(photo.cols);
+  const auto height = static_cast<float>(photo.rows);
+  const std::vector<cv::Point2f> corners{{0, 0}, {width, 0}, {width, height}, {0, height}};
+  std::vector<cv::Point2f> moved;
+  for (const cv::Point2f& corner : corners) {
+    const float dx = shift(random) * width;
+    moved.emplace_back(corner.x + dx, corner.y + shift(random) * height);
+  }
+  cv::Mat view;
+  cv::warpPerspective(photo, view, cv::getPerspectiveTransform(corners, moved), photo.size(),
+                      cv::INTER_LINEAR, cv::BORDER_REFLECT_101);
+  if (seed % 2 == 0) return view;
+  return LowLight(LowLight::kDefaultGain).apply(view, seed);
+}
+
+}  // namespace dxslam::apps
