@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/eval_openloris.h"
 #include "core/error.h"
 #include "evaluation/ate.h"
 #include "evaluation/rpe.h"
@@ -159,6 +160,8 @@ void add_eval_command(CLI::App& app) {
   rpe->add_flag("--consecutive", relative->consecutive,
                 "let each pair begin where the last ended, not at every pose");
   rpe->callback([relative] { evaluate_rpe_command(*relative); });
+
+  add_eval_openloris_command(*eval);
 }
 
 }  // namespace dxslam::apps

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "evaluation/svg.h"
 
 namespace dxslam {
 namespace {
@@ -47,22 +48,6 @@ struct View {
   }
 };
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else {
-      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
-
 View fit_view(const Trajectory& estimate, const Trajectory& truth) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::max());
   Eigen::Vector3d high = -low;
@@ -92,17 +77,6 @@ View fit_view(const Trajectory& estimate, const Trajectory& truth) {
   return view;
 }
 
-// The largest of 1, 2 and 5 times a power of ten that is not above `length`.
-double round_length(double length) {
-  const double power = std::pow(10.0, std::floor(std::log10(length)));
-  const double digits = length / power;
-  return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
-}
-
-std::string text_at(double x, double y, const std::string& text, const char* style) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, style, text);
-}
-
 std::string draw_grid(const View& view) {
   std::string out =
       fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#fbfcfd\"/>\n",
@@ -118,20 +92,20 @@ std::string draw_grid(const View& view) {
   for (double k = first(view.x0); view.px(k * step) <= right + 0.01; ++k) {
     const double x = view.px(k * step);
     out += fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" {3}/>\n", x, kTop, bottom, kLine);
-    out += text_at(x, bottom + 18, fmt::format("{:.{}f}", k * step + 0.0, digits),
-                   "class=\"tick\" text-anchor=\"middle\"");
+    out += svg_text(x, bottom + 18, fmt::format("{:.{}f}", k * step + 0.0, digits),
+                    "class=\"tick\" text-anchor=\"middle\"");
   }
   for (double k = first(view.y1 - view.height / view.scale); view.py(k * step) >= kTop - 0.01;
        ++k) {
     const double y = view.py(k * step);
     out += fmt::format("<path d=\"M{0:.1f} {1:.1f}H{2:.1f}\" {3}/>\n", kLeft, y, right, kLine);
-    out += text_at(kLeft - 8, y + 4, fmt::format("{:.{}f}", k * step + 0.0, digits),
-                   "class=\"tick\" text-anchor=\"end\"");
+    out += svg_text(kLeft - 8, y + 4, fmt::format("{:.{}f}", k * step + 0.0, digits),
+                    "class=\"tick\" text-anchor=\"end\"");
   }
   static constexpr char kAxes[] = "xyz";
-  out += text_at(right, bottom + 40, fmt::format("{} (m)", kAxes[view.axis_x]),
-                 "class=\"label\" text-anchor=\"end\"");
-  out += text_at(12, kTop - 10, fmt::format("{} (m)", kAxes[view.axis_y]), "class=\"label\"");
+  out += svg_text(right, bottom + 40, fmt::format("{} (m)", kAxes[view.axis_x]),
+                  "class=\"label\" text-anchor=\"end\"");
+  out += svg_text(12, kTop - 10, fmt::format("{} (m)", kAxes[view.axis_y]), "class=\"label\"");
   return out;
 }
 
@@ -165,13 +139,6 @@ std::string draw_line(const View& view, const Trajectory& trajectory, const char
       path, color, width);
 }
 
-std::string draw_mark(double x, double y, const char* color) {
-  return fmt::format(
-      "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5.5\" fill=\"{}\" stroke=\"#ffffff\" "
-      "stroke-width=\"2\"/>\n",
-      x, y, color);
-}
-
 std::string draw_scale_bar(const View& view) {
   const double metres = round_length(0.22 * view.width / view.scale);
   const double length = metres * view.scale;
@@ -183,7 +150,7 @@ std::string draw_scale_bar(const View& view) {
              "<path d=\"M{0:.1f} {2:.1f}v6H{1:.1f}v-6\" fill=\"none\" stroke=\"#2b3138\" "
              "stroke-width=\"2\"/>\n",
              x, x + length, y - 6) +
-         text_at(x + 0.5 * length, y - 10, label, "class=\"label halo\" text-anchor=\"middle\"");
+         svg_text(x + 0.5 * length, y - 10, label, "class=\"label halo\" text-anchor=\"middle\"");
 }
 
 std::string draw_legend(const View& view, bool with_truth) {
@@ -193,12 +160,12 @@ std::string draw_legend(const View& view, bool with_truth) {
   const auto line = [&](const char* color, double width, const char* text, double advance) {
     out += fmt::format("<path d=\"M{:.1f} {:.1f}h26\" stroke=\"{}\" stroke-width=\"{}\"/>\n", x,
                        y - 4, color, width);
-    out += text_at(x + 33, y, text, "class=\"label\"");
+    out += svg_text(x + 33, y, text, "class=\"label\"");
     x += advance;
   };
   const auto mark = [&](const char* color, const char* text, double advance) {
-    out += draw_mark(x + 6, y - 4, color);
-    out += text_at(x + 17, y, text, "class=\"label\"");
+    out += svg_dot(x + 6, y - 4, color);
+    out += svg_text(x + 17, y, text, "class=\"label\"");
     x += advance;
   };
   if (with_truth) line(kTruthColor, 4, "ground truth", 132);
@@ -216,23 +183,16 @@ std::string draw_trajectory_svg(const Trajectory& estimate, const Trajectory& tr
   const View view = fit_view(estimate, truth);
   const double width = kLeft + view.width + kRight;
   const double height = kTop + view.height + kBottom;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n<style>text{{font-family:'Helvetica Neue',Arial,"
-      "'DejaVu Sans',sans-serif;fill:#2b3138}}.title{{font-size:20px;font-weight:600}}"
-      ".label{{font-size:14px}}.sub{{font-size:14px;fill:#5c6570}}"
-      ".tick{{font-size:12px;fill:#7a838e}}.halo{{stroke:#fbfcfd;stroke-width:4px;"
-      "paint-order:stroke}}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-      width, height);
-  svg += text_at(kLeft, 34, escaped(title), "class=\"title\"");
-  svg += text_at(kLeft, 56, escaped(subtitle), "class=\"sub\"");
+  std::string svg = svg_begin(width, height);
+  svg += svg_text(kLeft, 34, svg_escaped(title), "class=\"title\"");
+  svg += svg_text(kLeft, 56, svg_escaped(subtitle), "class=\"sub\"");
   svg += draw_grid(view);
   if (!truth.empty()) svg += draw_line(view, truth, kTruthColor, 4.0);
   svg += draw_line(view, estimate, kEstimateColor, 2.0);
   const Eigen::Vector2d start = view.at(estimate.front());
   const Eigen::Vector2d end = view.at(estimate.back());
-  svg += draw_mark(start.x(), start.y(), kStartColor);
-  svg += draw_mark(end.x(), end.y(), kEndColor);
+  svg += svg_dot(start.x(), start.y(), kStartColor);
+  svg += svg_dot(end.x(), end.y(), kEndColor);
   svg += draw_scale_bar(view);
   svg += draw_legend(view, !truth.empty());
   return svg + "</svg>\n";

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "io/calibration.h"
+#include "io/openloris_sensors.h"
 #include "io/sequence_formats.h"
 #include "io/text_file.h"
 #include "io/trajectory_file.h"
@@ -19,19 +20,6 @@ namespace {
 
 constexpr const char* kColorFrame = "d400_color_optical_frame";
 constexpr const char* kBaseFrame = "base_link";
-
-// base_from_color of the two robots, as published with the dataset: one for office, corridor, home
-// and cafe, another for market. Used where the folder has no trans_matrix.yaml.
-SE3 published_base_from_color(bool market) {
-  if (market) {
-    return {Eigen::Quaterniond(-0.47671977566632984, 0.5508509426177262, -0.5167305893488635,
-                               0.44976770953124534),
-            Eigen::Vector3d(0.398363566676407, 0.029117046016620643, 1.198511534258444)};
-  }
-  return {Eigen::Quaterniond(0.5081504289345848, -0.49676229968284136, 0.4998795887129771,
-                             -0.49510681269354095),
-          Eigen::Vector3d(0.2264836849091656, -0.05114194035652147, 0.916)};
-}
 
 // The dataset's files are OpenCV's dialect, whose first line "%YAML:1.0" is not YAML.
 YAML::Node load_opencv_yaml(const std::string& path) {
@@ -153,7 +141,8 @@ SequenceListing list_openloris(const std::string& folder, const SequenceOptions&
   const std::string transforms = in_folder(folder, "trans_matrix.yaml");
   std::optional<SE3> base_from_color;
   if (std::filesystem::exists(transforms)) base_from_color = read_base_from_color(transforms);
-  if (!base_from_color) base_from_color = published_base_from_color(market);
+  // As published with the dataset, where the folder has no trans_matrix.yaml.
+  if (!base_from_color) base_from_color = openloris_base_from_sensor(market, "d400_color");
   for (const StampedPose& pose : read_trajectory(truth)) {
     listing.ground_truth.push_back({pose.stamp, pose.world_from_camera * *base_from_color});
   }
