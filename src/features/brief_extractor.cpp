@@ -40,6 +40,11 @@ class BriefExtractor final : public FeatureExtractor {
     return features;
   }
 
+  void keep_encoder(bool keep) override { detector_->keep_encoder(keep); }
+  std::vector<float> global_of(const cv::Mat& encoder) override {
+    return detector_->global_of(encoder);
+  }
+
  private:
   std::unique_ptr<FeatureExtractor> detector_;
   BriefDescriptor brief_;

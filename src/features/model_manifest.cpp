@@ -105,6 +105,15 @@ void read_normalization(YamlMap& map, InputDescription& input) {
     if (!(deviation > 0.0)) fail(map, fmt::format("`std` has {}, expected above 0", deviation));
   }
   input.instance_normalized = is_second(map, "normalization", "none", "instance");
+  map.take("deviation_floor", input.deviation_floor, {0, 255}, "grey levels");
+  input.unshuffle = integer(map, "unshuffle", 1, {1, 16}, "pixels");
+  map.take("quantization_step", input.quantization_step, {1e-9, 1e9}, "");
+  if (input.unshuffle > 1 && !(input.instance_normalized && input.channels == 1)) {
+    fail(map, "`unshuffle` is given, expected one channel and `normalization: instance` with it");
+  }
+  if (input.quantization_step > 0.0 && input.unshuffle == 1) {
+    fail(map, "`quantization_step` is given, expected `unshuffle` with it");
+  }
 }
 
 void read_fixed_size(YamlMap& map, InputDescription& input) {
@@ -195,6 +204,10 @@ void read_detection(YamlMap& top, ModelManifest& manifest) {
 
 void check_size_multiple(const YamlMap& top, const ModelManifest& manifest) {
   const int multiple = manifest.input.size_multiple;
+  if (multiple % manifest.input.unshuffle != 0) {
+    fail(top, fmt::format("input.size_multiple is {}, expected a multiple of input.unshuffle {}",
+                          multiple, manifest.input.unshuffle));
+  }
   if (manifest.keypoint_logits && multiple % manifest.cell_size != 0) {
     fail(top, fmt::format("input.size_multiple is {}, expected a multiple of detector.cell_size {}",
                           multiple, manifest.cell_size));

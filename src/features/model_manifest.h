@@ -40,11 +40,21 @@ struct InputDescription {
   std::vector<double> mean;          ///< then the mean is subtracted, one a channel or empty,
   std::vector<double> deviation;     ///< and divided by the deviation, one a channel or empty
   bool instance_normalized = false;  ///< each image to zero mean and unit deviation (instead)
+  /// Added to that deviation, in grey levels, so that noise on an even image stays small.
+  double deviation_floor = 0.0;
+  /// Blocks of this side become the channels of one place (grey, normalised images only): the
+  /// network's input is unshuffle * unshuffle x H / unshuffle x W / unshuffle. 1 = as it is.
+  int unshuffle = 1;
+  /// What one unit of the input stands for where a model takes 8-bit integers (unshuffled only).
+  double quantization_step = 0.0;
   /// Images are padded at the bottom and on the right to a multiple of this.
   int size_multiple = 32;
   /// Where the network has one size: images are scaled to it. 0 = any size.
   int fixed_width = 0;
   int fixed_height = 0;
+
+  /// Channels of the network's input.
+  int blocks() const { return channels * unshuffle * unshuffle; }
 };
 
 struct OutputDescription {

@@ -55,8 +55,8 @@ class NetworkExtractor final : public FeatureExtractor {
   NetworkExtractor(const ModelManifest& manifest, const ExtractorOptions& options)
       : manifest_(manifest),
         detector_(detector_options(manifest, options)),
-        input_(manifest.input),
         engine_(manifest, options),
+        input_(manifest.input, engine_.integer_input()),
         cells_(manifest.cell_size) {
     traits_.dimension = manifest.descriptor.dimension;
     traits_.max_distance = static_cast<float>(manifest.descriptor.max_distance);
@@ -74,12 +74,21 @@ class NetworkExtractor final : public FeatureExtractor {
     timer_.stop("preprocess");
     engine_.run(prepared, with_global && traits_.global_dimension > 0);
     timer_.stop("network");
-    find_candidates(prepared.size());
-    select(prepared.size());
+    find_candidates(input_.size());
+    select(input_.size());
     timer_.stop("detect");
     Features features = describe();
+    if (keeps_encoder_) features.encoder = engine_.encoder();
     timer_.stop("describe");
     return features;
+  }
+
+  void keep_encoder(bool keep) override { keeps_encoder_ = keep; }
+
+  std::vector<float> global_of(const cv::Mat& encoder) override {
+    std::vector<float> global = engine_.global_of(encoder);
+    normalize(global);
+    return global;
   }
 
  private:
@@ -179,13 +188,14 @@ class NetworkExtractor final : public FeatureExtractor {
   ModelManifest manifest_;
   DetectorOptions detector_;
   DescriptorTraits traits_;
-  NetworkInput input_;
   OpenVinoEngine engine_;
+  NetworkInput input_;
   CellScores cells_;
   TensorView scores_;  // of the last image; in cells_ or engine_
   NonMaximumSuppression suppression_;
   std::vector<Candidate> candidates_;
   StageTimer timer_;
+  bool keeps_encoder_ = false;
 };
 
 }  // namespace

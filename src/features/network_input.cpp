@@ -7,11 +7,18 @@
 #include <opencv2/imgproc.hpp>
 
 #include "features/grey_image.h"
+#include "features/pixel_blocks.h"
 
 namespace dxslam {
 namespace {
 
 int round_up(int size, int multiple) { return (size + multiple - 1) / multiple * multiple; }
+
+double normalizing_scale(double deviation, double floor) {
+  constexpr double kSmallestVariance = 1e-5;
+  if (floor > 0.0) return 1.0 / (deviation + floor);
+  return 1.0 / std::sqrt(deviation * deviation + kSmallestVariance);
+}
 
 }  // namespace
 
@@ -35,32 +42,49 @@ const cv::Mat& NetworkInput::prepare(const cv::Mat& image) {
     scale_x_ = static_cast<float>(image.cols) / static_cast<float>(content_.width);
     scale_y_ = static_cast<float>(image.rows) / static_cast<float>(content_.height);
   }
-  const cv::Size padded = description_.fixed_width > 0
-                              ? content_
-                              : cv::Size(round_up(content_.width, description_.size_multiple),
-                                         round_up(content_.height, description_.size_multiple));
-  if (channels_.size() != content_) {
-    cv::resize(channels_, sized_, content_, 0, 0, cv::INTER_LINEAR);
-    prepared_ = sized_;
-  } else if (padded != content_) {
-    cv::copyMakeBorder(channels_, sized_, 0, padded.height - content_.height, 0,
-                       padded.width - content_.width, cv::BORDER_REPLICATE);
-    prepared_ = sized_;
-  } else {
-    prepared_ = channels_.isContinuous() ? channels_ : channels_.clone();
+  padded_ = description_.fixed_width > 0
+                ? content_
+                : cv::Size(round_up(content_.width, description_.size_multiple),
+                           round_up(content_.height, description_.size_multiple));
+  set_size();
+  if (description_.unshuffle > 1) {
+    unshuffle();
+  } else if (description_.instance_normalized) {
+    normalize();
   }
-  if (description_.instance_normalized) normalize();
   return prepared_;
 }
 
+void NetworkInput::set_size() {
+  if (channels_.size() != content_) {
+    cv::resize(channels_, sized_, content_, 0, 0, cv::INTER_LINEAR);
+    prepared_ = sized_;
+  } else if (padded_ != content_) {
+    cv::copyMakeBorder(channels_, sized_, 0, padded_.height - content_.height, 0,
+                       padded_.width - content_.width, cv::BORDER_REPLICATE);
+    prepared_ = sized_;
+  } else {
+    const bool gaps_matter = description_.unshuffle == 1;
+    prepared_ = channels_.isContinuous() || !gaps_matter ? channels_ : channels_.clone();
+  }
+}
+
 void NetworkInput::normalize() {
-  constexpr double kSmallestVariance = 1e-5;
   cv::Scalar mean;
   cv::Scalar deviation;
   cv::meanStdDev(prepared_.reshape(1), mean, deviation);
-  const double scale = 1.0 / std::sqrt(deviation[0] * deviation[0] + kSmallestVariance);
+  const double scale = normalizing_scale(deviation[0], description_.deviation_floor);
   prepared_.convertTo(normalized_, CV_32F, scale, -mean[0] * scale);
   prepared_ = normalized_;
+}
+
+void NetworkInput::unshuffle() {
+  const PixelStatistics found = pixel_statistics(prepared_);
+  double scale = normalizing_scale(found.deviation, description_.deviation_floor);
+  if (integers_) scale /= description_.quantization_step;
+  pixels_to_blocks(prepared_, description_.unshuffle, static_cast<float>(scale),
+                   static_cast<float>(-found.mean * scale), integers_ ? CV_8S : CV_32F, blocks_);
+  prepared_ = blocks_;
 }
 
 PixelArea NetworkInput::area(int border) const {

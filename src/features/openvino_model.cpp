@@ -88,6 +88,18 @@ ov::Output<ov::Node> find_tensor(const ov::Model& model, const std::string& name
                                list_names(model.outputs()), name, key));
 }
 
+/// Blocks come as floats, or as integers of a known step.
+void check_input_type(const ov::Model& model, const InputDescription& input,
+                      const std::string& path) {
+  const ov::element::Type type = model.input(0).get_element_type();
+  if (input.unshuffle == 1 || type == ov::element::f32) return;
+  if (type == ov::element::i8 && input.quantization_step > 0.0) return;
+  throw InputError(
+      fmt::format("{}: input {} is of type {}, expected f32, or i8 with the manifest's "
+                  "input.quantization_step",
+                  path, input.name, type.to_string()));
+}
+
 /// Score maps and other one-channel outputs may come without their channel axis.
 bool shape_fits(const ov::Shape& found, const OutputSpec& spec, int height, int width) {
   if (spec.stride == 0) return ov::shape_size(found) == static_cast<std::size_t>(spec.channels);
@@ -151,13 +163,14 @@ void check_input(const ov::Model& model, const InputDescription& input, const st
   const auto rank = shape.rank();
   const std::size_t channel = input.layout == TensorLayout::kNchw ? 1 : 3;
   if (rank.is_static() && rank.get_length() == 4 && shape[0].compatible(1) &&
-      shape[channel].compatible(input.channels)) {
+      shape[channel].compatible(input.blocks())) {
+    check_input_type(model, input, path);
     return;
   }
   throw InputError(
       fmt::format("{}: input {} has shape {}, expected {}", path, input.name, text(shape),
-                  input.layout == TensorLayout::kNchw ? fmt::format("[1,{},H,W]", input.channels)
-                                                      : fmt::format("[1,H,W,{}]", input.channels)));
+                  input.layout == TensorLayout::kNchw ? fmt::format("[1,{},H,W]", input.blocks())
+                                                      : fmt::format("[1,H,W,{}]", input.blocks())));
 }
 
 void check_output(const ov::Output<const ov::Node>& port, const OutputSpec& spec, int height,
