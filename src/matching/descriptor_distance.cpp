@@ -9,15 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
-
-// One source, several instruction sets: the loader picks the best the CPU has (ifunc). Sanitizers
-// start before ifuncs are resolved, so their builds take the portable version.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    defined(__GNUC__) && !defined(__clang__)
-#define DXSLAM_SIMD __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define DXSLAM_SIMD
-#endif
+#include "core/simd.h"
 
 namespace dxslam {
 namespace {

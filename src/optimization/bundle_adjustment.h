@@ -32,6 +32,7 @@ struct BundleProblem {
 struct BundleOptions {
   int iterations = 5;         // with the robust kernel
   int refine_iterations = 5;  // after outliers were set aside
+  double min_decrease = 1e-6;
   double chi2_pixel = 5.991;
   double chi2_depth = 7.815;
   int threads = 1;
@@ -41,6 +42,8 @@ struct BundleOptions {
     visit("iterations", self.iterations, {1, 1000}, "steps", "steps with the robust kernel");
     visit("refine_iterations", self.refine_iterations, {0, 1000}, "steps",
           "steps after outliers were set aside");
+    visit("min_decrease", self.min_decrease, {0, 1}, "",
+          "share of the cost that a step must gain for another to follow");
     visit("chi2_pixel", self.chi2_pixel, {0.1, 100}, "sigma^2",
           "gate of an observation without depth");
     visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2",

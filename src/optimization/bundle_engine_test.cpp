@@ -22,6 +22,7 @@ class BundleEngineTest : public testing::TestWithParam<bool> {
  protected:
   void prepare(const BundleSceneOptions& options) {
     scene_ = make_bundle_scene(options);
+    options_.min_decrease = 1e-9;
     for (const BundleProblem::Pose& pose : scene_.problem.poses) {
       start_.camera_from_world.push_back(pose.world_from_camera.inverse());
       stage_.held.push_back(pose.fixed ? 1 : 0);

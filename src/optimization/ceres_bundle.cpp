@@ -15,7 +15,6 @@ namespace dxslam {
 namespace {
 
 constexpr int kMaxDensePoses = 100;  // above it the reduced camera system is sparse
-constexpr double kFunctionTolerance = 1e-7;
 
 // Ambient layout of a pose camera_from_world: qx qy qz qw tx ty tz.
 using PoseBlock = std::array<double, 7>;
@@ -154,7 +153,7 @@ ceres::Solver::Options solver_options(const BundleStage& stage, int free_poses) 
   options.dense_linear_algebra_library_type = ceres::EIGEN;
   options.max_num_iterations = stage.iterations;
   options.num_threads = stage.options->threads;
-  options.function_tolerance = kFunctionTolerance;
+  options.function_tolerance = stage.options->min_decrease;
   options.logging_type = ceres::SILENT;
   return options;
 }

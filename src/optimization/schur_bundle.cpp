@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
 #include "optimization/bundle_engine.h"
 
 namespace dxslam {
@@ -15,11 +16,50 @@ namespace {
 
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
+/// A column of six, padded to one AVX-512 register.
+using Column = double __attribute__((vector_size(64), aligned(64)));
+/// 6x3 and 6x6 blocks as such columns.
+struct Block63 {
+  Column column[3];
+};
+struct Block66 {
+  Column column[6];
+};
+
+/// Place of block (a, b), a >= b, in a lower triangle of blocks.
+inline std::size_t triangle(std::size_t a, std::size_t b) { return a * (a + 1) / 2 + b; }
+
+/// target -= s t^T.
+[[gnu::always_inline]] inline void subtract_outer(const Block63& s, const Block63& t,
+                                                  Block66& target) {
+  for (int c = 0; c < 6; ++c) {
+    target.column[c] -=
+        s.column[0] * t.column[0][c] + s.column[1] * t.column[1][c] + s.column[2] * t.column[2][c];
+  }
+}
+
+/// Fill-in between all poses that see one point: for each pair of links the block of the lower
+/// triangle. Links without a slot (negative) are of poses that are held.
+DXSLAM_SIMD void couple(const int* slots, const Block63* scaled, int count, Block66* reduced) {
+  for (int i = 0; i < count; ++i) {
+    if (slots[i] < 0) continue;
+    const auto a = static_cast<std::size_t>(slots[i]);
+    for (int j = 0; j <= i; ++j) {
+      if (slots[j] < 0) continue;
+      const auto b = static_cast<std::size_t>(slots[j]);
+      if (a >= b) subtract_outer(scaled[i], scaled[j], reduced[triangle(a, b)]);
+      // Both halves where one pose sees the point twice.
+      if (a < b || (a == b && i != j)) {
+        subtract_outer(scaled[j], scaled[i], reduced[triangle(b, a)]);
+      }
+    }
+  }
+}
+
 constexpr double kInitialDamping = 1e-4;  // share of the diagonal of the normal equations
 constexpr double kMinDamping = 1e-9;
-constexpr double kMaxDamping = 1e8;      // beyond it no step can help any more
-constexpr double kSmallDecrease = 1e-6;  // share of the cost at which the minimum counts as reached
-constexpr double kTinyDiagonal = 1e-9;   // keeps directions without any constraint solvable
+constexpr double kMaxDamping = 1e8;     // beyond it no step can help any more
+constexpr double kTinyDiagonal = 1e-9;  // keeps directions without any constraint solvable
 
 /// An observation that takes part, laid out for the sweep over points.
 struct Link {
@@ -72,7 +112,9 @@ class SchurSolver {
     reduced_.resize(size, size);
     pose_step_.resize(size);
     cross_.resize(links_.size());
-    scaled_.resize(links_.size());
+    scaled_.resize(links_.size(), Block63{});
+    for (const Link& link : links_) link_slots_.push_back(link.slot);
+    blocks_.resize(poses_.size() * (poses_.size() + 1) / 2);
     rotations_.resize(state.camera_from_world.size());
   }
 
@@ -103,7 +145,7 @@ class SchurSolver {
       growth = 2.0;
       std::swap(state_, trial);
       fresh = false;
-      if (cost - trial_cost < kSmallDecrease * cost) break;
+      if (cost - trial_cost < stage_.options->min_decrease * cost) break;
     }
     report.usable = std::isfinite(cost);
     return report;
@@ -241,24 +283,20 @@ class SchurSolver {
 
   /// Eliminates the points and solves for the poses. False if the system is not positive definite.
   bool solve(double damping) {
-    reduced_.setZero();
+    std::fill(blocks_.begin(), blocks_.end(), Block66{});
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(6 * i);
-      auto diagonal = reduced_.block<6, 6>(at, at);
-      diagonal = poses_[i].hessian;
+      Matrix6d diagonal = poses_[i].hessian.selfadjointView<Eigen::Lower>();
       diagonal.diagonal() +=
           damping * poses_[i].hessian.diagonal() + Vector6d::Constant(kTinyDiagonal);
-      pose_step_.segment<6>(at) = -poses_[i].gradient;
+      Block66& block = blocks_[triangle(i, i)];
+      for (int c = 0; c < 6; ++c) std::copy_n(diagonal.col(c).data(), 6, &block.column[c][0]);
+      pose_step_.segment<6>(static_cast<Eigen::Index>(6 * i)) = -poses_[i].gradient;
     }
     for (PointBlock& block : points_) {
       if (!factorise(block.hessian, damping, block.root)) return false;
       eliminate(block);
     }
-    if (poses_.empty()) return true;
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> factor(reduced_);
-    if (factor.info() != Eigen::Success) return false;
-    factor.solveInPlace(pose_step_);
-    return true;
+    return poses_.empty() || solve_for_poses();
   }
 
   void eliminate(PointBlock& block) {
@@ -268,29 +306,35 @@ class SchurSolver {
     y(1) = (block.gradient(1) - l(1, 0) * y(0)) / l(1, 1);
     y(2) = (block.gradient(2) - l(2, 0) * y(0) - l(2, 1) * y(1)) / l(2, 2);
     for (int i = block.first; i < block.last; ++i) {
-      const int slot = links_[static_cast<std::size_t>(i)].slot;
+      const int slot = link_slots_[static_cast<std::size_t>(i)];
       if (slot < 0) continue;
       const Matrix63d& w = cross_[static_cast<std::size_t>(i)];
-      Matrix63d& s = scaled_[static_cast<std::size_t>(i)];  // w L^-T
+      Matrix63d s;  // w L^-T
       s.col(0) = w.col(0) / l(0, 0);
       s.col(1) = (w.col(1) - l(1, 0) * s.col(0)) / l(1, 1);
       s.col(2) = (w.col(2) - l(2, 0) * s.col(0) - l(2, 1) * s.col(1)) / l(2, 2);
       pose_step_.segment<6>(6 * slot) += s * y;
-      reduced_.block<6, 6>(6 * slot, 6 * slot).noalias() -= s * s.transpose();
-      for (int j = block.first; j < i; ++j) couple(i, j);
+      Block63& scaled = scaled_[static_cast<std::size_t>(i)];
+      for (int c = 0; c < 3; ++c) std::copy_n(s.col(c).data(), 6, &scaled.column[c][0]);
     }
+    couple(link_slots_.data() + block.first, scaled_.data() + block.first, block.last - block.first,
+           blocks_.data());
   }
 
-  /// Fill-in between two poses that see one point; only the lower triangle is kept.
-  void couple(int i, int j) {
-    const int a = links_[static_cast<std::size_t>(i)].slot;
-    const int b = links_[static_cast<std::size_t>(j)].slot;
-    if (b < 0) return;
-    const Matrix63d& s = scaled_[static_cast<std::size_t>(i)];
-    const Matrix63d& t = scaled_[static_cast<std::size_t>(j)];
-    if (a >= b) reduced_.block<6, 6>(6 * a, 6 * b).noalias() -= s * t.transpose();
-    // Both halves where one pose sees the point twice.
-    if (a <= b) reduced_.block<6, 6>(6 * b, 6 * a).noalias() -= t * s.transpose();
+  bool solve_for_poses() {
+    for (std::size_t a = 0; a < poses_.size(); ++a) {
+      for (std::size_t b = 0; b <= a; ++b) {
+        const Block66& block = blocks_[triangle(a, b)];
+        for (std::size_t c = 0; c < 6; ++c) {
+          std::copy_n(&block.column[c][0], 6,
+                      reduced_.col(static_cast<Eigen::Index>(6 * b + c)).data() + 6 * a);
+        }
+      }
+    }
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> factor(reduced_);
+    if (factor.info() != Eigen::Success) return false;
+    factor.solveInPlace(pose_step_);
+    return true;
   }
 
   /// Applies the step to a copy of the state; returns the decrease of cost the model predicts.
@@ -319,8 +363,11 @@ class SchurSolver {
     for (int k = block.first; k < block.last; ++k) {
       const int slot = links_[static_cast<std::size_t>(k)].slot;
       if (slot < 0) continue;
-      y.noalias() -=
-          scaled_[static_cast<std::size_t>(k)].transpose() * pose_step_.segment<6>(6 * slot);
+      const Block63& scaled = scaled_[static_cast<std::size_t>(k)];
+      for (int c = 0; c < 3; ++c) {
+        y(c) -=
+            Eigen::Map<const Vector6d>(&scaled.column[c][0]).dot(pose_step_.segment<6>(6 * slot));
+      }
     }
     const Eigen::Matrix3d& l = block.root;
     Eigen::Vector3d step;
@@ -335,11 +382,13 @@ class SchurSolver {
   std::vector<int> slots_;  ///< one a pose: place among the free ones that are seen, or -1
   std::vector<PoseBlock> poses_;
   std::vector<PointBlock> points_;
-  std::vector<Link> links_;        ///< by point
-  std::vector<Matrix63d> cross_;   ///< pose-point blocks of the hessian, one a link
-  std::vector<Matrix63d> scaled_;  ///< the same times L^-T of the point
+  std::vector<Link> links_;       ///< by point
+  std::vector<Matrix63d> cross_;  ///< pose-point blocks of the hessian, one a link
+  std::vector<Block63> scaled_;   ///< the same times L^-T of the point
+  std::vector<int> link_slots_;   ///< slots of the links
   std::vector<Eigen::Matrix3d> rotations_;
-  Eigen::MatrixXd reduced_;  ///< camera system after the elimination, lower triangle
+  std::vector<Block66> blocks_;  ///< camera system after the elimination, see triangle()
+  Eigen::MatrixXd reduced_;      ///< the same as one matrix, lower triangle
   Eigen::VectorXd pose_step_;
 };
 
