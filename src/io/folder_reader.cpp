@@ -15,60 +15,6 @@ namespace {
 
 constexpr double kFramesASecond = 10.0;
 
-bool is_image(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
-}
-
-bool all_digits(const std::string& text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-}
-
-// Numbers by value (without leading zeros the longer one is larger), other names by their letters.
-bool name_less(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const std::string x = a.stem().string();
-  const std::string y = b.stem().string();
-  if (!all_digits(x) || !all_digits(y)) return a.filename() < b.filename();
-  const std::string significant_x = x.substr(std::min(x.find_first_not_of('0'), x.size()));
-  const std::string significant_y = y.substr(std::min(y.find_first_not_of('0'), y.size()));
-  if (significant_x.size() != significant_y.size()) {
-    return significant_x.size() < significant_y.size();
-  }
-  return significant_x < significant_y;
-}
-
-std::vector<std::filesystem::path> list_images(const std::string& folder) {
-  std::vector<std::filesystem::path> images;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (is_image(entry.path())) images.push_back(entry.path());
-  }
-  // Numbers first: comparing numbers with other names by letters would be no order.
-  const auto other = std::partition(images.begin(), images.end(), [](const auto& path) {
-    return all_digits(path.stem().string());
-  });
-  std::sort(images.begin(), other, name_less);
-  std::sort(other, images.end(), name_less);
-  if (images.empty()) {
-    throw InputError(fmt::format("{}: no image in it, expected PNG or JPEG files", folder));
-  }
-  return images;
-}
-
-// The first readable image says how large all of them are.
-cv::Size image_size(const std::vector<std::filesystem::path>& images) {
-  std::string first_error;
-  for (std::size_t i = 0; i < std::min<std::size_t>(images.size(), 10); ++i) {
-    try {
-      return read_color_image(images[i].string()).size();
-    } catch (const InputError& e) {
-      if (first_error.empty()) first_error = e.what();
-    }
-  }
-  throw InputError(first_error);
-}
-
 Camera read_intrinsics(const std::string& path, cv::Size size) {
   const std::vector<TextRow> rows = read_table(path, "a 3x3 camera matrix");
   Eigen::Matrix3d k;
@@ -128,7 +74,9 @@ SequenceListing list_folder(const std::string& folder, const SequenceOptions& op
   const auto images = list_images(in_folder(folder, "images"));
   if (!use_explicit_calibration(folder, options, listing)) {
     listing.calibration_source = in_folder(folder, "K.txt");
-    listing.camera = read_intrinsics(listing.calibration_source, image_size(images));
+    const bool made_up = !options.needs_calibration && !fs::exists(listing.calibration_source);
+    listing.camera = made_up ? made_up_camera(image_size(images))
+                             : read_intrinsics(listing.calibration_source, image_size(images));
   }
   const bool has_depth = fs::is_directory(in_folder(folder, "depth"));
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -2,7 +2,10 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <filesystem>
+#include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "io/listed_sequence.h"
 #include "io/sequence_reader.h"
@@ -14,9 +17,13 @@ SequenceListing list_tum(const std::string& folder, const SequenceOptions& optio
 SequenceListing list_openloris(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_seven_scenes(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_folder(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_kitti(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_image_folder(const std::string& folder, const SequenceOptions& options);
 
 /// Whether `folder` holds frames named as those of 7-Scenes.
 bool has_seven_scenes_frames(const std::string& folder);
+/// Whether `folder` holds PNG or JPEG files.
+bool has_images(const std::string& folder);
 
 // What the readers share.
 
@@ -36,5 +43,12 @@ void associate_lists(const std::string& folder, const std::string& color_list,
 /// world_from_camera of 16 numbers, row by row. `where` is "FILE:LINE" for messages. Throws unless
 /// the rotation is orthonormal within 1 % and the last row is 0 0 0 1.
 SE3 pose_from_row_major(const double (&values)[16], const std::string& where);
+/// PNG and JPEG files of a folder in the order of their names, numbers by value. Throws InputError
+/// if there is none.
+std::vector<std::filesystem::path> list_images(const std::string& folder);
+/// Size of the first readable one; throws InputError if none of the first ten is.
+cv::Size image_size(const std::vector<std::filesystem::path>& images);
+/// The camera of SequenceOptions::needs_calibration = false.
+Camera made_up_camera(cv::Size size);
 
 }  // namespace dxslam

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 struct Format {
   const char* name;
-  bool (*recognises)(const std::string& folder);
+  bool (*recognises)(const std::string& folder);  // none: only where no other does
   SequenceListing (*list)(const std::string& folder, const SequenceOptions& options);
 };
 
@@ -33,27 +33,12 @@ const std::vector<Format>& formats() {
       {"tum", [](const std::string& f) { return has(f, "rgb.txt"); }, list_tum},
       {"7scenes", has_seven_scenes_frames, list_seven_scenes},
       {"openloris", [](const std::string& f) { return has(f, "color.txt"); }, list_openloris},
+      {"kitti", [](const std::string& f) { return has(f, "times.txt") && has(f, "calib.txt"); },
+       list_kitti},
       {"folder", [](const std::string& f) { return has(f, "images"); }, list_folder},
+      {"images", nullptr, list_image_folder},
   };
   return table;
-}
-
-const Format& recognise(const std::string& folder) {
-  const Format* found = nullptr;
-  for (const Format& format : formats()) {
-    if (!format.recognises(folder)) continue;
-    if (found != nullptr) {
-      throw InputError(fmt::format("{}: looks like both {} and {}, expected --format to say which",
-                                   folder, found->name, format.name));
-    }
-    found = &format;
-  }
-  if (found != nullptr) return *found;
-  throw InputError(fmt::format(
-      "{}: not a recording known here, expected rgb.txt and depth.txt (tum), "
-      "frame-NNNNNN.color.png "
-      "(7scenes), color.txt and aligned_depth.txt (openloris) or images/ and K.txt (folder){}",
-      folder, has(folder, "seq-01") ? "; its subfolder seq-01 may be one" : ""));
 }
 
 const Format& format_named(const std::string& name) {
@@ -64,6 +49,27 @@ const Format& format_named(const std::string& name) {
                                fmt::join(sequence_formats(), ", ")));
 }
 
+const Format& recognise(const std::string& folder) {
+  const Format* found = nullptr;
+  for (const Format& format : formats()) {
+    if (format.recognises == nullptr || !format.recognises(folder)) continue;
+    if (found != nullptr) {
+      throw InputError(fmt::format("{}: looks like both {} and {}, expected --format to say which",
+                                   folder, found->name, format.name));
+    }
+    found = &format;
+  }
+  if (found != nullptr) return *found;
+  if (has_images(folder) || has(folder, "Images")) return format_named("images");
+  throw InputError(
+      fmt::format("{}: not a recording known here, expected rgb.txt and depth.txt (tum), "
+                  "frame-NNNNNN.color.png "
+                  "(7scenes), color.txt and aligned_depth.txt (openloris), images/ and K.txt "
+                  "(folder), times.txt "
+                  "and calib.txt (kitti) or image files (images){}",
+                  folder, has(folder, "seq-01") ? "; its subfolder seq-01 may be one" : ""));
+}
+
 SequenceListing list_sequence(const std::string& path, const SequenceOptions& options) {
   if (!(options.max_association_s >= 0.0 && options.max_association_s <= 1e3)) {
     throw InputError(fmt::format("option max_association_s is {} s, expected 0 to 1000",
@@ -72,6 +78,10 @@ SequenceListing list_sequence(const std::string& path, const SequenceOptions& op
   if (!fs::is_directory(path)) {
     throw InputError(fmt::format("{}: {}, expected the folder of a recording", path,
                                  fs::exists(path) ? "not a folder" : "no such folder"));
+  }
+  if (options.eye != "all" && options.eye != "left" && options.eye != "right") {
+    throw InputError(
+        fmt::format("option eye is {}, expected all, left or right", in_quotes(options.eye)));
   }
   const Format& format = options.format == "auto" ? recognise(path) : format_named(options.format);
   return format.list(path, options);

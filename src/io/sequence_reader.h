@@ -19,9 +19,15 @@ struct SequenceOptions {
   /// the format or the folder's name says.
   std::string calibration;
   double max_association_s = 0.02;  ///< largest difference of colour and depth stamps, seconds
+  /// all, left or right: which images of a folder in which two cameras take turns, left first
+  /// (images), or which camera (kitti; `all` is its left one). Others have one camera.
+  std::string eye = "all";
+  /// If false, a folder or images without any calibration get a pinhole camera with a focal length
+  /// of the image width: for what looks at appearance only.
+  bool needs_calibration = true;
 };
 
-/// tum, 7scenes, openloris, folder.
+/// tum, 7scenes, openloris, kitti, folder, images.
 const std::vector<std::string>& sequence_formats();
 
 /// Opens a recording. Lists, calibration and trajectories are read and checked at once, a few
@@ -37,6 +43,11 @@ const std::vector<std::string>& sequence_formats();
 ///   camera is registered to the colour camera.
 /// - folder: images/, optional depth/ (same names, .png), poses.txt (4x4 world_from_camera a row),
 ///   K.txt; images in the order of their names; stamp row / fps, 10 frames a second by default.
+/// - kitti: a sequence of KITTI odometry: image_0/ and image_1/ (grey) or image_2/ and image_3/
+///   (colour), times.txt, calib.txt, optional ../../poses/NN.txt or poses.txt (3x4 a row, of camera
+///   0); no depth.
+/// - images: image files, in the folder or in its subfolder Images (City Centre and New College of
+///   FAB-MAP: left and right in turn), in the order of their names, stamp index / fps; no depth.
 ///
 /// Throws InputError, one sentence with file, line and what was expected, for everything that makes
 /// the recording as a whole unusable. Single bad frames are left to RgbdSequence::read.

@@ -27,9 +27,9 @@ TEST(SequenceReader, RefusesAmbiguousFoldersAndUnknownFormats) {
   SequenceOptions options;
   options.format = "openloris";
   expect_input_error([&] { open_sequence(folder.path(), options); }, {"color.txt", "empty list"});
-  options.format = "kitti";
+  options.format = "euroc";
   expect_input_error([&] { open_sequence(folder.path(), options); },
-                     {"'kitti'", "auto, tum, 7scenes, openloris, folder"});
+                     {"'euroc'", "auto, tum, 7scenes, openloris, kitti, folder, images"});
 }
 
 TEST(SequenceReader, LoadsTheTruthOfAFileOrAFolder) {
