@@ -18,7 +18,8 @@ constexpr int kColumns = 8;  // of the grid on which spread is counted
 constexpr int kRows = 6;
 constexpr double kMinViewCosine = 0.5;  // farther round, a point is taken for unseen
 constexpr double kMaxDistanceRatio = 2.5;
-constexpr int kMinExpected = 20;  // points in view of a neighbour that is worth asking
+constexpr int kMinExpectedInCell = 3;  // points due in a cell that is worth counting
+constexpr int kMinExpected = 20;       // points in view of a neighbour that is worth asking
 
 int shared_points(const Keyframe& keyframe, KeyframeId other) {
   for (const Covisible& c : keyframe.covisibles) {
@@ -47,7 +48,6 @@ class LoopVerifier {
     report_.accepted = true;
     report_.candidate_from_query =
         map_.keyframe(candidate).world_from_camera.inverse() * world_from_query_;
-    report_.scale = scale();
     return report_;
   }
 
@@ -123,12 +123,15 @@ class LoopVerifier {
       report_.inliers = pose.inliers;
       report_.rms_pixels = pose.rms_pixels;
       inlier_ = pose.inlier;
+      expected_pixels_.clear();
+      for (const PixelPrediction& p : predictions) expected_pixels_.push_back(p.pixel);
     }
     return LoopRejection::kNone;
   }
 
   LoopRejection judge() {
     collect_inliers();
+    report_.scale = scale();
     report_.found_share = found_share(report_.inliers, report_.expected, query_frame());
     report_.depth_share = depth_share();
     if (report_.inliers < options_.min_inliers) return LoopRejection::kFewInliers;
@@ -136,21 +139,25 @@ class LoopVerifier {
       return LoopRejection::kManyOutliers;
     }
     if (report_.found_share < options_.min_found_share) return LoopRejection::kFewFound;
-    if (report_.cells < options_.min_cells) return LoopRejection::kNarrow;
+    if (report_.cells < options_.min_cells || report_.covered_share < options_.min_covered_share) {
+      return LoopRejection::kNarrow;
+    }
     if (report_.depth_share < options_.min_depth_share) return LoopRejection::kDepth;
     return LoopRejection::kNone;
   }
 
   // A pose that only one image speaks for is chance or a picture on another wall.
   LoopRejection confirm() {
-    const SE3 correction =
-        world_from_query_ * map_.keyframe(report_.query).world_from_camera.inverse();
+    const SE3 query_from_world = map_.keyframe(report_.query).world_from_camera.inverse();
     for (const Covisible& c : map_.best_covisibles(
              report_.query, static_cast<std::size_t>(options_.confirming_keyframes),
              options_.group_min_shared)) {
       const Keyframe& neighbour = map_.keyframe(c.keyframe);
+      const SE3 query_from_neighbour = query_from_world * neighbour.world_from_camera;
+      const SE3 as_long_as_there(query_from_neighbour.rotation(),
+                                 report_.scale * query_from_neighbour.translation());
       const std::vector<PixelPrediction> predictions =
-          predict(correction * neighbour.world_from_camera, 0.5 * options_.search_radius);
+          predict(world_from_query_ * as_long_as_there, 0.5 * options_.search_radius);
       const int expected = static_cast<int>(predictions.size());
       if (expected < kMinExpected) continue;
       ++report_.confirming;
@@ -216,20 +223,33 @@ class LoopVerifier {
     return observations;
   }
 
+  std::size_t cell_of(const Eigen::Vector2f& pixel) const {
+    const int x = static_cast<int>(pixel.x() / static_cast<float>(camera_.width) * kColumns);
+    const int y = static_cast<int>(pixel.y() / static_cast<float>(camera_.height) * kRows);
+    return static_cast<std::size_t>(std::clamp(y, 0, kRows - 1) * kColumns +
+                                    std::clamp(x, 0, kColumns - 1));
+  }
+
   void collect_inliers() {
-    std::array<bool, kColumns * kRows> filled{};
+    std::array<int, kColumns * kRows> found{};
+    std::array<int, kColumns * kRows> expected{};
     for (std::size_t i = 0; i < matches_.size(); ++i) {
       if (inlier_[i] == 0) continue;
       const auto k = static_cast<std::size_t>(matches_[i].b);
       report_.inlier_matches.push_back(
           {static_cast<std::uint32_t>(k), points_[static_cast<std::size_t>(matches_[i].a)]});
-      const Eigen::Vector2f& pixel = query_frame().pixels[k];
-      const int x = static_cast<int>(pixel.x() / static_cast<float>(camera_.width) * kColumns);
-      const int y = static_cast<int>(pixel.y() / static_cast<float>(camera_.height) * kRows);
-      filled[static_cast<std::size_t>(std::clamp(y, 0, kRows - 1) * kColumns +
-                                      std::clamp(x, 0, kColumns - 1))] = true;
+      ++found[cell_of(query_frame().pixels[k])];
     }
-    report_.cells = static_cast<int>(std::count(filled.begin(), filled.end(), true));
+    for (const Eigen::Vector2f& pixel : expected_pixels_) ++expected[cell_of(pixel)];
+    int due = 0;
+    int covered = 0;
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      if (found[c] > 0) ++report_.cells;
+      if (expected[c] < kMinExpectedInCell) continue;
+      ++due;
+      if (found[c] > 0) ++covered;
+    }
+    report_.covered_share = due > 0 ? static_cast<double>(covered) / due : 0.0;
     std::sort(report_.inlier_matches.begin(), report_.inlier_matches.end(),
               [](const LoopMatch& a, const LoopMatch& b) { return a.keypoint < b.keypoint; });
   }
@@ -287,7 +307,8 @@ class LoopVerifier {
   cv::Mat descriptors_;          // one row a point
   std::vector<Match> matches_;   // a: row of the point, b: keypoint of the query
   std::vector<char> inlier_;     // one a match
-  SE3 world_from_query_;         // in the candidate's world
+  std::vector<Eigen::Vector2f> expected_pixels_;  // of the points that should be in view
+  SE3 world_from_query_;                          // in the candidate's world
 };
 
 }  // namespace

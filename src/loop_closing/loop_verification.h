@@ -45,6 +45,7 @@ struct LoopVerificationOptions {
   double min_inlier_ratio = 0.5;
   double min_found_share = 0.15;
   int min_cells = 8;
+  double min_covered_share = 0.35;
   double depth_tolerance = 0.1;
   double min_depth_share = 0.6;
   int confirming_keyframes = 5;
@@ -77,6 +78,9 @@ struct LoopVerificationOptions {
         "their share of the points that should be in view, or of the keypoints if these are fewer");
     visit("min_cells", self.min_cells, {1, 48}, "cells",
           "of a grid of 8 by 6 over the image in which they must lie");
+    visit("min_covered_share", self.min_covered_share, {0, 1}, "",
+          "share of the cells where points are due that must hold one: a picture that hangs "
+          "elsewhere, too, fills its frame only");
     visit("depth_tolerance", self.depth_tolerance, {0.001, 10}, "",
           "relative difference of predicted and measured depth");
     visit("min_depth_share", self.min_depth_share, {0, 1}, "",
@@ -103,18 +107,19 @@ struct LoopVerification {
   bool accepted = false;
   LoopRejection rejection = LoopRejection::kNone;
 
-  int points = 0;            ///< sought
-  int matches = 0;           ///< by descriptor alone
-  int pose_inliers = 0;      ///< of these, with the pose found
-  int guided_matches = 0;    ///< near the pixel predicted by that pose
-  int inliers = 0;           ///< of these, after refinement
-  int expected = 0;          ///< points that should be in view
-  double found_share = 0.0;  ///< see LoopVerificationOptions
-  int cells = 0;             ///< of the image in which there are inliers
-  double depth_share = 0.0;  ///< of points at their pixel, with the right depth; 1 without depths
-  int confirming = 0;        ///< neighbours of the query that should see the place
-  int confirmations = 0;     ///< neighbours that do
-  double rms_pixels = 0.0;   ///< over inliers
+  int points = 0;              ///< sought
+  int matches = 0;             ///< by descriptor alone
+  int pose_inliers = 0;        ///< of these, with the pose found
+  int guided_matches = 0;      ///< near the pixel predicted by that pose
+  int inliers = 0;             ///< of these, after refinement
+  int expected = 0;            ///< points that should be in view
+  double found_share = 0.0;    ///< see LoopVerificationOptions
+  int cells = 0;               ///< of the image in which there are inliers
+  double covered_share = 0.0;  ///< of the cells in which points are due
+  double depth_share = 0.0;    ///< of points at their pixel, with the right depth; 1 without depths
+  int confirming = 0;          ///< neighbours of the query that should see the place
+  int confirmations = 0;       ///< neighbours that do
+  double rms_pixels = 0.0;     ///< over inliers
 
   SE3 candidate_from_query;  ///< valid if accepted; lengths are those of the candidate's points
   /// Lengths around the candidate over lengths around the query: the drift in scale. 1 where it
