@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,6 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 struct Arguments {
   std::string truth;
@@ -88,24 +91,27 @@ void print_report(const std::string& file, const OpenlorisReport& report) {
   std::size_t poses = 0;
   std::size_t matched = 0;
   bool correct = false;
+  std::vector<int> absent;
   for (const OpenlorisSequenceReport& sequence : report.sequences) {
     duration += sequence.duration();
     poses += sequence.poses;
     matched += sequence.errors.size();
     correct = correct || sequence.correct_position.count > 0;
-    if (sequence.present) print_sequence(sequence);
+    if (sequence.present) {
+      print_sequence(sequence);
+    } else {
+      absent.push_back(sequence.number);
+    }
   }
   const OpenlorisTotals& t = report.totals;
   fmt::print("{:<6} {:>7.1f} {:>7} {:>7} {:>8.3f} {:>8.3f} {:>8} {:>9} {:>9}\n", "scene", duration,
              poses, matched, t.tracked_rate, t.correct_rate,
              cell(matched > 0, t.correct_rate_once_started), cell(matched > 0, t.position),
              cell(correct, t.correct_position));
-  for (const OpenlorisSequenceReport& sequence : report.sequences) {
-    if (sequence.present) continue;
-    fmt::print("sequence {} is not in the result and counts as never localized ", sequence.number);
-    fmt::print("({:.1f} s); without such, correct is {:.3f}\n", sequence.duration(),
-               t.correct_rate_present);
-  }
+  if (absent.empty()) return;
+  fmt::print(
+      "not in the result, counted as never localized: seq {}; without them correct is {:.3f}\n",
+      fmt::join(absent, ", "), t.correct_rate_present);
 }
 
 Json to_json(const ErrorStatistics& s) {
@@ -237,12 +243,12 @@ void add_eval_openloris_command(CLI::App& eval) {
   command
       ->add_option("--max-position", arguments->max_position,
                    "largest error of a correct position, metres, or inf (1 to 5, by the scene)")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-9, kNoLimit))
       ->option_text("M");
   command
       ->add_option("--max-angle", arguments->max_angle,
                    "largest error of a correct orientation, degrees, or inf (30)")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-9, kNoLimit))
       ->option_text("DEG");
   command->add_option("--align", arguments->alignment, "se3 or sim3 (with scale)")
       ->check(CLI::IsMember({"se3", "sim3"}))
