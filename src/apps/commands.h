@@ -25,5 +25,6 @@ void add_synth_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 void add_features_command(CLI::App& app);
 void add_vocab_command(CLI::App& app);
+void add_loops_command(CLI::App& app);
 
 }  // namespace dxslam::apps

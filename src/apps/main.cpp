@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   apps::add_config_command(app);
   apps::add_features_command(app);
   apps::add_vocab_command(app);
+  apps::add_loops_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/loop_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "features/data_directory.h"
+#include "features/extractor_factory.h"
+#include "io/low_light.h"
+#include "place/two_view_check.h"
+#include "vocabulary/vocabulary.h"
+
+namespace dxslam::apps {
+namespace {
+
+constexpr double kPoseTolerance = 0.05;  // seconds between a frame and its pose, at most
+
+class Timer {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
+        .count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::string vocabulary_path(const std::string& given, const std::string& name) {
+  if (!given.empty()) return given;
+  return (std::filesystem::path(data_directory()) / "models" / "vocabulary" / (name + ".fbow"))
+      .string();
+}
+
+/// One kind of features: extractor, vocabulary, and what was found in the images so far.
+class FeatureSide {
+ public:
+  FeatureSide(const std::string& name, const ExtractorOptions& options,
+              const std::string& vocabulary, bool with_words, bool keep_all)
+      : extractor_(make_extractor(name, options)), keep_all_(keep_all) {
+    if (!with_words) return;
+    vocabulary_ = Vocabulary::load(vocabulary_path(vocabulary, extractor_->name()));
+    const DescriptorTraits& traits = extractor_->traits();
+    if (vocabulary_->binary() == traits.binary && vocabulary_->dimension() == traits.dimension) {
+      return;
+    }
+    throw InputError(fmt::format("{}: words of {} {}, expected {} {} as {} has", vocabulary,
+                                 vocabulary_->dimension(),
+                                 vocabulary_->binary() ? "bytes" : "floats", traits.dimension,
+                                 traits.binary ? "bytes" : "floats", extractor_->name()));
+  }
+
+  const FeatureExtractor& extractor() const { return *extractor_; }
+  std::size_t word_count() const { return vocabulary_ ? vocabulary_->word_count() : 0; }
+  const std::vector<double>& extraction_ms() const { return extraction_ms_; }
+  double words_ms() const { return words_ms_; }
+  const BowVector& bow() const { return bow_; }
+  const std::vector<float>& global() const { return now_->global; }
+
+  void extract(const cv::Mat& image, std::uint32_t frame) {
+    const Timer extraction;
+    now_ = std::make_shared<Features>(extractor_->extract(image, true));
+    extraction_ms_.push_back(extraction.ms());
+    const Timer quantising;
+    if (vocabulary_) bow_ = vocabulary_->transform(now_->descriptors);
+    words_ms_ = quantising.ms();
+    if (keep_all_) all_[frame] = now_;
+  }
+
+  int inliers_with(std::uint32_t frame) const {
+    return count_epipolar_inliers(*now_, *all_.at(frame), extractor_->traits());
+  }
+
+ private:
+  std::unique_ptr<FeatureExtractor> extractor_;
+  std::optional<Vocabulary> vocabulary_;
+  bool keep_all_;
+  std::shared_ptr<const Features> now_;
+  BowVector bow_;
+  double words_ms_ = 0.0;
+  std::vector<double> extraction_ms_;
+  std::unordered_map<std::uint32_t, std::shared_ptr<const Features>> all_;
+};
+
+/// One method at work.
+struct Contestant {
+  LoopDetector detector;
+  FeatureSide* side;
+  MethodRun run;
+
+  void ask(std::uint32_t frame, const PlaceExclusion& excluded) {
+    const Timer timer;
+    const LoopVerifier verify = [this](std::uint32_t id) { return side->inliers_with(id); };
+    LoopQuery query{frame, detector.detect(side->bow(), side->global(), excluded, verify), 0.0};
+    query.ms = timer.ms() + (detector.method().words ? side->words_ms() : 0.0);
+    run.queries.push_back(std::move(query));
+  }
+};
+
+class Experiment {
+ public:
+  explicit Experiment(const LoopSettings& settings) : settings_(settings) {
+    for (const std::string& name : settings.methods) methods_.push_back(parse_loop_method(name));
+    make_side(true, orb_);
+    make_side(false, hf_);
+    for (const LoopMethod& method : methods_) {
+      LoopOptions options = settings.detector;
+      options.method = method.name;
+      FeatureSide* side = (method.orb ? orb_ : hf_).get();
+      if (method.global && side->extractor().traits().global_dimension == 0) {
+        throw InputError(fmt::format("extractor {} has no global descriptor, expected one for {}",
+                                     side->extractor().name(), method.name));
+      }
+      contestants_.push_back({LoopDetector(options), side, {options, 0, {}}});
+      contestants_.back().run.words = method.words ? side->word_count() : 0;
+    }
+  }
+
+  void process(const cv::Mat& image, std::uint32_t frame, const PlaceExclusion& excluded) {
+    if (orb_) orb_->extract(image, frame);
+    if (hf_) hf_->extract(image, frame);
+    const bool two_passes = settings_.second_pass_from.has_value();
+    const bool second = two_passes && frame >= *settings_.second_pass_from;
+    if (!two_passes || second) {
+      result_.queries.push_back(frame);
+      for (Contestant& contestant : contestants_) contestant.ask(frame, excluded);
+    }
+    if (second) return;
+    result_.places.push_back(frame);
+    for (Contestant& c : contestants_) c.detector.add(frame, c.side->bow(), c.side->global());
+  }
+
+  LoopExperiment take_result() {
+    for (Contestant& contestant : contestants_) {
+      result_.runs.push_back(std::move(contestant.run));
+    }
+    if (hf_) result_.hf_name = hf_->extractor().name();
+    if (hf_) result_.hf_ms = hf_->extraction_ms();
+    if (orb_) result_.orb_ms = orb_->extraction_ms();
+    return std::move(result_);
+  }
+
+ private:
+  // Of the features that methods on this side need, if there are any.
+  void make_side(bool orb, std::unique_ptr<FeatureSide>& side) const {
+    bool wanted = false;
+    bool words = false;
+    bool geometry = false;
+    for (const LoopMethod& method : methods_) {
+      if (method.orb != orb) continue;
+      wanted = true;
+      words = words || method.words;
+      geometry = geometry || method.geometry;
+    }
+    if (!wanted) return;
+    const std::string name = orb                          ? std::string("orb")
+                             : settings_.features.empty() ? default_extractor()
+                                                          : settings_.features;
+    side = std::make_unique<FeatureSide>(name, settings_.extractor,
+                                         orb ? settings_.orb_vocabulary : settings_.hf_vocabulary,
+                                         words, geometry);
+  }
+
+  const LoopSettings& settings_;
+  std::vector<LoopMethod> methods_;
+  std::unique_ptr<FeatureSide> orb_;
+  std::unique_ptr<FeatureSide> hf_;
+  std::vector<Contestant> contestants_;
+  LoopExperiment result_;
+};
+
+LoopTruth truth_from_poses(const LoopSettings& settings, const RgbdSequence& sequence) {
+  const Trajectory& truth = sequence.ground_truth();
+  if (truth.empty()) {
+    throw InputError(fmt::format(
+        "{}: the recording has no poses, expected --ground-truth with a file", settings.sequence));
+  }
+  Trajectory poses;
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const double stamp = sequence.stamp(i);
+    const auto after =
+        std::lower_bound(truth.begin(), truth.end(), stamp,
+                         [](const StampedPose& pose, double value) { return pose.stamp < value; });
+    auto nearest = after == truth.end() ? std::prev(after) : after;
+    if (after != truth.begin() && after != truth.end() &&
+        stamp - std::prev(after)->stamp < after->stamp - stamp) {
+      nearest = std::prev(after);
+    }
+    if (std::abs(nearest->stamp - stamp) > kPoseTolerance) continue;
+    poses.push_back({stamp, nearest->world_from_camera});
+    frames.push_back(i);
+  }
+  return loop_truth_from_poses(poses, frames, sequence.size(), settings.poses);
+}
+
+// Frames 2k and 2k + 1 are the two views of place k; these two of each other say nothing.
+LoopTruth two_views_a_place(const LoopTruth& places) {
+  LoopTruth truth(2 * places.frames());
+  for (std::size_t i = 0; i < truth.frames(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const PairTruth pair = i / 2 == j / 2 ? PairTruth::kUnclear : places.at(i / 2, j / 2);
+      if (pair != PairTruth::kDifferent) truth.set(i, j, pair);
+    }
+  }
+  return truth;
+}
+
+}  // namespace
+
+LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& sequence,
+                                   const std::function<void(std::size_t, std::size_t)>& progress) {
+  Experiment experiment(settings);
+  const LowLight low_light(settings.low_light_gain > 0.0 ? settings.low_light_gain
+                                                         : LowLight::kDefaultGain);
+  std::size_t total = (sequence.size() + settings.stride - 1) / settings.stride;
+  if (settings.max_frames > 0) total = std::min(total, settings.max_frames);
+  for (std::size_t k = 0; k < total; ++k) {
+    const std::size_t i = k * settings.stride;
+    std::optional<RgbdImage> image = sequence.read(i);
+    progress(k + 1, total);
+    if (!image) continue;
+    if (settings.low_light_from && i >= *settings.low_light_from) {
+      image->color = low_light.apply(image->color, image->index);
+    }
+    const double latest = sequence.stamp(i) - settings.poses.window;
+    experiment.process(image->color, static_cast<std::uint32_t>(i),
+                       [&](std::uint32_t place) { return sequence.stamp(place) > latest; });
+  }
+  return experiment.take_result();
+}
+
+LoopTruth load_loop_truth(const LoopSettings& settings, const RgbdSequence& sequence) {
+  if (settings.truth == "poses") return truth_from_poses(settings, sequence);
+  LoopTruth truth = read_loop_truth(settings.truth);
+  const std::size_t frames = sequence.size();
+  if (truth.frames() == frames) return truth;
+  if (settings.eye != "all") {
+    LoopTruth part = every_nth(truth, settings.eye == "right" ? 1 : 0, 2);
+    if (part.frames() == frames) return part;
+  } else if (frames == 2 * truth.frames()) {
+    return two_views_a_place(truth);
+  }
+  throw InputError(fmt::format("{}: true loops of {} frames, expected {} as the recording has",
+                               settings.truth, truth.frames(), frames));
+}
+
+}  // namespace dxslam::apps
