@@ -51,14 +51,14 @@ class PointScene {
     auto frame = std::make_shared<Frame>();
     frame->index = index;
     frame->stamp = static_cast<double>(index) / 30.0;
-    std::normal_distribution<double> normal(0.0, noise);
+    std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
     const SE3 camera_from_world = world_from_camera.inverse();
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Eigen::Vector3d p = camera_from_world * points_[i];
       if (p.z() < 0.3) continue;
       const Eigen::Vector2d pixel =
-          camera_.project(p) + Eigen::Vector2d(normal(generator_), normal(generator_));
+          camera_.project(p) + noise * Eigen::Vector2d(normal(generator_), normal(generator_));
       if (!camera_.contains(pixel)) continue;
       frame->pixels.push_back(pixel.cast<float>());
       frame->depths.push_back(uniform(generator_) < depth_share ? static_cast<float>(p.z()) : 0.0F);
