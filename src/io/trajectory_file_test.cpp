@@ -94,6 +94,30 @@ TEST(AtomicFile, KeepsTheOldFileWhenWritingFails) {
   EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a temporary file was left behind";
 }
 
+TEST(AtomicFile, ClearsUpAfterThoseWhoWereKilled) {
+  const TestFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  const std::string dead = std::to_string(child);
+  const std::string alive = std::to_string(::getpid());
+  const std::vector<std::string> kept = {"f",
+                                         "f." + alive + ".0.tmp",
+                                         "f." + dead + ".tmp",
+                                         "f." + dead + ".0.tmp.old",
+                                         "f.-" + dead + ".0.tmp",
+                                         "g." + dead + ".0.tmp",
+                                         "f.x." + dead + ".0.tmp"};
+  for (const std::string& name : kept) folder.write(name, "x");
+  folder.write("f." + dead + ".0.tmp", "x");
+  folder.write("f." + dead + ".17.tmp", "x");
+  remove_stale_temporaries(folder / "f");
+  for (const std::string& name : kept) EXPECT_EQ(folder.read(name), "x") << name;
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), static_cast<long>(kept.size()));
+  remove_stale_temporaries(folder / "none/f");
+}
+
 TEST(AtomicFile, WritesThroughLinksAndToDevices) {
   const TestFolder folder;
   folder.write("target", "old");

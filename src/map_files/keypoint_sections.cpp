@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+
+// The sections with what the keyframes' images look like: by far the largest of a map file, so they
+// are read in parallel and checked on the way.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "core/error.h"
+#include "map_files/in_parallel.h"
+#include "map_files/map_sections.h"
+
+namespace dxslam {
+namespace {
+
+constexpr std::size_t kNumbers = 5;  // a keypoint: x, y, depth, score, sigma
+constexpr float kLargest = 1e9F;     // of any of them; fits an int
+
+DescriptorCoding read_coding(SectionReader& reader, bool binary) {
+  const auto coding = reader.get<std::uint32_t>();
+  const bool fits = binary ? coding == 0 : coding == 1 || coding == 2;
+  if (!fits) reader.fail(fmt::format("descriptors of coding {}", coding));
+  return static_cast<DescriptorCoding>(coding);
+}
+
+// Whether all are finite and at most kLargest: compared as whole numbers, which vectorises.
+bool are_plausible(const float* values, std::size_t n) {
+  std::uint32_t bound = 0;
+  std::memcpy(&bound, &kLargest, sizeof bound);
+  bool good = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, values + i, sizeof bits);
+    good &= (bits & 0x7FFFFFFFU) <= bound;
+  }
+  return good;
+}
+
+bool are_plausible(const Frame& f) {
+  bool positive = true;
+  for (std::size_t i = 0; i < f.size(); ++i) positive &= f.depths[i] >= 0.0F && f.sigmas[i] > 0.0F;
+  const bool floats = f.descriptors.type() == CV_32FC1;
+  return positive && are_plausible(reinterpret_cast<const float*>(f.pixels.data()), 2 * f.size()) &&
+         are_plausible(f.depths.data(), f.size()) && are_plausible(f.scores.data(), f.size()) &&
+         are_plausible(f.sigmas.data(), f.size()) &&
+         (!floats || are_plausible(f.descriptors.ptr<float>(), f.descriptors.total()));
+}
+
+template <class Value>
+void copy_out(const char*& from, std::vector<Value>& to, std::size_t n) {
+  to.resize(n);
+  if (n > 0) std::memcpy(static_cast<void*>(to.data()), from, n * sizeof(Value));
+  from += n * sizeof(Value);
+}
+
+void fill_frame(const char* from, DescriptorCoding coding, const DescriptorTraits& traits,
+                Frame& frame) {
+  const std::size_t n = frame.size();
+  copy_out(from, frame.pixels, n);
+  copy_out(from, frame.depths, n);
+  copy_out(from, frame.scores, n);
+  copy_out(from, frame.sigmas, n);
+  frame.descriptors.create(static_cast<int>(n), traits.dimension,
+                           traits.binary ? CV_8UC1 : CV_32FC1);
+  const std::size_t size = coded_size(coding, traits.dimension);
+  for (int row = 0; row < frame.descriptors.rows; ++row, from += size) {
+    decode_descriptor(coding, from, traits.dimension, frame.descriptors.ptr(row));
+  }
+}
+
+void check_frame(const Frame& frame, const DescriptorTraits& traits) {
+  const std::size_t n = frame.size();
+  require(frame.depths.size() == n && frame.scores.size() == n && frame.sigmas.size() == n &&
+              frame.descriptors.rows == static_cast<int>(n),
+          "a frame to be saved needs as many depths, scores, sigmas and descriptors as keypoints");
+  require(
+      n == 0 || (frame.descriptors.type() == (traits.binary ? CV_8UC1 : CV_32FC1) &&
+                 frame.descriptors.cols == traits.dimension && frame.descriptors.isContinuous()),
+      "descriptors to be saved must be of the kind that the header says");
+  require(are_plausible(frame), "a frame to be saved holds numbers that are not finite");
+}
+
+}  // namespace
+
+std::size_t keypoint_size(DescriptorCoding coding, int dimension) {
+  return kNumbers * sizeof(float) + coded_size(coding, dimension);
+}
+
+void write_keypoints(const MapParts& parts, const DescriptorTraits& traits, DescriptorCoding coding,
+                     SectionWriter& file) {
+  file.begin(kKeypointsId, kSectionVersion, true);
+  file.put(static_cast<std::uint32_t>(coding));
+  const std::size_t size = coded_size(coding, traits.dimension);
+  for (const Keyframe& k : parts.keyframes) {
+    const Frame& f = *k.frame;
+    check_frame(f, traits);
+    file.put_array(reinterpret_cast<const float*>(f.pixels.data()), 2 * f.size());
+    file.put_array(f.depths.data(), f.size());
+    file.put_array(f.scores.data(), f.size());
+    file.put_array(f.sigmas.data(), f.size());
+    char* coded = file.put_room(f.size() * size);
+    for (int row = 0; row < f.descriptors.rows; ++row, coded += size) {
+      encode_descriptor(coding, f.descriptors.ptr(row), traits.dimension, coded);
+    }
+  }
+}
+
+std::size_t keypoint_capacity(SectionReader reader, const DescriptorTraits& traits) {
+  const std::size_t size = keypoint_size(read_coding(reader, traits.binary), traits.dimension);
+  return reader.left() / size;
+}
+
+void read_keypoints(SectionReader reader, const DescriptorTraits& traits,
+                    const std::vector<std::shared_ptr<Frame>>& frames) {
+  const DescriptorCoding coding = read_coding(reader, traits.binary);
+  std::vector<std::string_view> records;
+  records.reserve(frames.size());
+  for (const auto& frame : frames) {
+    records.push_back(reader.take(frame->size(), keypoint_size(coding, traits.dimension)));
+  }
+  reader.expect_end();
+  in_parallel(frames.size(), [&](std::size_t i) {
+    fill_frame(records[i].data(), coding, traits, *frames[i]);
+    if (!are_plausible(*frames[i])) {
+      reader.fail(fmt::format("a keypoint of keyframe {} has impossible numbers", i));
+    }
+  });
+}
+
+void write_globals(const MapParts& parts, const DescriptorTraits& traits, DescriptorCoding coding,
+                   SectionWriter& file) {
+  const int dimension = traits.global_dimension;
+  if (dimension == 0) return;
+  file.begin(kGlobalsId, kSectionVersion, false);
+  file.put(static_cast<std::uint32_t>(coding));
+  for (const Keyframe& k : parts.keyframes) {
+    file.put(static_cast<std::uint8_t>(k.frame->global.empty() ? 0 : 1));
+  }
+  for (const Keyframe& k : parts.keyframes) {
+    const std::vector<float>& global = k.frame->global;
+    if (global.empty()) continue;
+    require(global.size() == static_cast<std::size_t>(dimension) &&
+                are_plausible(global.data(), global.size()),
+            "global descriptors to be saved must be finite and of the header's dimension");
+    encode_descriptor(coding, global.data(), dimension,
+                      file.put_room(coded_size(coding, dimension)));
+  }
+}
+
+void read_globals(SectionReader reader, const DescriptorTraits& traits,
+                  const std::vector<std::shared_ptr<Frame>>& frames) {
+  const DescriptorCoding coding = read_coding(reader, false);
+  const std::size_t size = coded_size(coding, traits.global_dimension);
+  const std::string_view present = reader.take(frames.size(), 1);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (present[i] == 0) continue;
+    const std::string_view coded = reader.take(1, size);
+    std::vector<float>& global = frames[i]->global;
+    global.resize(static_cast<std::size_t>(traits.global_dimension));
+    decode_descriptor(coding, coded.data(), traits.global_dimension, global.data());
+    if (!are_plausible(global.data(), global.size())) {
+      reader.fail(fmt::format("the global descriptor of keyframe {}", i));
+    }
+  }
+  reader.expect_end();
+}
+
+}  // namespace dxslam

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "map_files/map_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/text_file.h"
+#include "map_files/file_bytes.h"
+#include "map_files/map_sections.h"
+
+namespace dxslam {
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t{16} << 30;
+
+KeyframeId number_of(const std::vector<KeyframeId>& ids, KeyframeId id) {
+  return static_cast<KeyframeId>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+}
+
+// Upper bound of what the sections take, so that the file is built in place.
+std::size_t expected_size(const MapSnapshot& snapshot, DescriptorCoding coding) {
+  std::size_t keypoints = 0;
+  for (const Keyframe& k : snapshot.parts.keyframes) keypoints += k.frame->size();
+  std::size_t observations = 0;
+  for (const MapPoint& p : snapshot.parts.points) observations += p.observations.size();
+  std::size_t pictures = 0;
+  for (const std::string& picture : snapshot.thumbnails) pictures += picture.size() + 4;
+  const auto global = static_cast<std::size_t>(snapshot.header.traits.global_dimension);
+  return 4096 + snapshot.parts.keyframes.size() * (96 + global * sizeof(float)) +
+         keypoints * keypoint_size(coding, snapshot.header.traits.dimension) +
+         snapshot.parts.points.size() * 80 + observations * 8 + snapshot.loops.size() * 64 +
+         pictures;
+}
+
+// The sections of a file by name: the first of a kind counts.
+class Sections {
+ public:
+  Sections(std::vector<Section> sections, const std::string& where)
+      : sections_(std::move(sections)), where_(where) {
+    for (const Section& s : sections_) check_known(s);
+  }
+
+  SectionReader needed(const char* id) const {
+    const Section* section = find(id);
+    if (section == nullptr) {
+      throw InputError(fmt::format("{}: damaged map file: section {} is missing", where_, id));
+    }
+    return {*section, where_};
+  }
+  std::optional<SectionReader> optional(const char* id) const {
+    const Section* section = find(id);
+    if (section == nullptr) return std::nullopt;
+    return SectionReader(*section, where_);
+  }
+
+ private:
+  // A section of a version that is not known is as good as none.
+  const Section* find(const std::string& id) const {
+    const auto it = std::find_if(sections_.begin(), sections_.end(), [&](const Section& s) {
+      return s.id == id && s.version == kSectionVersion;
+    });
+    return it == sections_.end() ? nullptr : &*it;
+  }
+
+  void check_known(const Section& s) const {
+    const char* const known[] = {kHeaderId, kKeyframesId, kKeypointsId, kGlobalsId,
+                                 kPointsId, kLoopsId,     kThumbnailsId};
+    const bool is_known = s.version == kSectionVersion &&
+                          std::find(std::begin(known), std::end(known), s.id) != std::end(known);
+    if (is_known || !s.required) return;
+    throw InputError(fmt::format(
+        "{}: map file with a section {} of version {}, which this program does not know; a newer "
+        "dxslam wrote it",
+        where_, in_quotes(s.id), s.version));
+  }
+
+  std::vector<Section> sections_;
+  std::string where_;
+};
+
+MapParts read_parts(const Sections& sections, const DescriptorTraits& traits) {
+  MapParts parts;
+  std::vector<std::shared_ptr<Frame>> frames;
+  const SectionReader keypoints = sections.needed(kKeypointsId);
+  read_keyframes(sections.needed(kKeyframesId), keypoint_capacity(keypoints, traits), parts,
+                 frames);
+  read_keypoints(keypoints, traits, frames);
+  if (const auto globals = sections.optional(kGlobalsId); globals && traits.global_dimension > 0) {
+    read_globals(*globals, traits, frames);
+  }
+  read_points(sections.needed(kPointsId), parts);
+  return parts;
+}
+
+std::string features_of(const MapHeader& header) {
+  return fmt::format("`{}` ({} {})", header.extractor, header.traits.dimension,
+                     header.traits.binary ? "bytes" : "floats");
+}
+
+}  // namespace
+
+MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
+                          const std::vector<StoredLoopEdge>& loops,
+                          const std::vector<std::string>& thumbnails) {
+  MapSnapshot snapshot{header, take_apart(map), {}, {}};
+  const std::vector<KeyframeId> ids = map.keyframe_ids();
+  for (const StoredLoopEdge& loop : loops) {
+    const Map::Anchor a = map.anchor_of(loop.a);
+    const Map::Anchor b = map.anchor_of(loop.b);
+    if (a.keyframe == b.keyframe) continue;
+    snapshot.loops.push_back(
+        {number_of(ids, a.keyframe), number_of(ids, b.keyframe),
+         a.anchor_from_camera * loop.a_from_b * b.anchor_from_camera.inverse()});
+  }
+  if (thumbnails.empty()) return snapshot;
+  for (const KeyframeId id : ids) {
+    snapshot.thumbnails.push_back(id < thumbnails.size() ? thumbnails[id] : std::string());
+  }
+  return snapshot;
+}
+
+void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFileOptions& options) {
+  require(
+      snapshot.thumbnails.empty() || snapshot.thumbnails.size() == snapshot.parts.keyframes.size(),
+      "there must be one thumbnail a keyframe, or none at all");
+  const DescriptorTraits& traits = snapshot.header.traits;
+  const DescriptorCoding floats =
+      options.exact_descriptors ? DescriptorCoding::kFloat32 : DescriptorCoding::kInt8;
+  const DescriptorCoding coding = traits.binary ? DescriptorCoding::kBytes : floats;
+  SectionWriter file(expected_size(snapshot, coding));
+  write_header(snapshot.header, file);
+  write_keyframes(snapshot.parts, file);
+  write_keypoints(snapshot.parts, traits, coding, file);
+  write_globals(snapshot.parts, traits, floats, file);
+  write_points(snapshot.parts, file);
+  write_loops(snapshot.loops, file);
+  write_thumbnails(snapshot.thumbnails, file);
+  remove_stale_temporaries(path);
+  write_file_atomically(path, file.finish());
+}
+
+StoredMap load_map(const std::string& path) {
+  const FileBytes file(path, "a dxslam map", kLargestFile);
+  return parse_map(file.data(), file.size(), path);
+}
+
+StoredMap parse_map(const char* bytes, std::size_t size, const std::string& where) {
+  const Sections sections(read_sections({bytes, size}, where), where);
+  MapHeader header = read_header(sections.needed(kHeaderId), where);
+  MapParts parts = read_parts(sections, header.traits);
+  std::vector<StoredLoopEdge> loops;
+  if (const auto section = sections.optional(kLoopsId)) loops = read_loops(*section, parts);
+  std::vector<std::string> thumbnails;
+  if (const auto section = sections.optional(kThumbnailsId)) {
+    thumbnails = read_thumbnails(*section, parts.keyframes.size());
+  }
+  try {
+    return {std::move(header), Map(std::move(parts)), std::move(loops), std::move(thumbnails)};
+  } catch (const ContractError& e) {
+    throw InputError(fmt::format("{}: damaged map file: {}", where, e.what()));
+  }
+}
+
+std::vector<MapFileSection> list_map_sections(const std::string& path) {
+  const FileBytes file(path, "a dxslam map", kLargestFile);
+  std::vector<MapFileSection> list;
+  for (const Section& s : read_sections({file.data(), file.size()}, path)) {
+    list.push_back({s.id, s.version, s.bytes.size()});
+  }
+  return list;
+}
+
+void require_same_features(const MapHeader& map, const MapHeader& current,
+                           const std::string& where) {
+  const bool same_descriptors = map.traits.binary == current.traits.binary &&
+                                map.traits.dimension == current.traits.dimension &&
+                                map.traits.global_dimension == current.traits.global_dimension;
+  const bool hashes = !map.model_hash.empty() && !current.model_hash.empty();
+  if (same_descriptors &&
+      (hashes ? map.model_hash == current.model_hash : map.extractor == current.extractor)) {
+    return;
+  }
+  const bool other_weights = same_descriptors && map.extractor == current.extractor;
+  throw InputError(
+      fmt::format("{}: the map was made with features {}, in use are {}{}; their descriptors "
+                  "cannot be compared",
+                  where, features_of(map), features_of(current),
+                  other_weights ? " of another training (the weights' hashes differ)" : ""));
+}
+
+void require_same_camera(const MapHeader& map, const MapHeader& current, const std::string& where) {
+  const Camera& a = map.camera;
+  const Camera& b = current.camera;
+  // Keypoints are stored undistorted: the lens does not matter.
+  const double pixels = std::max(
+      {std::abs(a.fx - b.fx), std::abs(a.fy - b.fy), std::abs(a.cx - b.cx), std::abs(a.cy - b.cy)});
+  if (a.width == b.width && a.height == b.height && pixels < 0.01) return;
+  throw InputError(fmt::format(
+      "{}: the map was made with a camera of {}x{} pixels, fx {:.2f} fy {:.2f} cx {:.2f} cy "
+      "{:.2f}, "
+      "expected {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}",
+      where, a.width, a.height, a.fx, a.fy, a.cx, a.cy, b.width, b.height, b.fx, b.fy, b.cx, b.cy));
+}
+
+}  // namespace dxslam

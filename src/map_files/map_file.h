@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/features.h"
+#include "core/se3.h"
+#include "map/map_parts.h"
+
+namespace dxslam {
+
+/// What a map was made with.
+struct MapHeader {
+  Camera camera;
+  std::string extractor;  ///< FeatureExtractor::name()
+  /// SHA-256 of the network's weights; empty where there is no network or it is not known.
+  std::string model_hash;
+  DescriptorTraits traits;
+};
+
+/// Two keyframes found to see the same place, and where one is in the frame of the other.
+struct StoredLoopEdge {
+  KeyframeId a = kNoId;
+  KeyframeId b = kNoId;
+  SE3 a_from_b;
+};
+
+/// All that goes into a file, as it was at one moment: shares only frames, which never change, so
+/// that another thread may save it while the map lives on.
+struct MapSnapshot {
+  MapHeader header;
+  MapParts parts;
+  std::vector<StoredLoopEdge> loops;  ///< between keyframes of one component
+  /// JPEG pictures by keyframe, "" where there is none; empty altogether, or one a keyframe.
+  std::vector<std::string> thumbnails;
+};
+
+/// Copies the map with its ids numbered anew (take_apart). `loops` and `thumbnails` are by the ids
+/// of `map`; a loop edge whose keyframe was removed goes to that keyframe's anchor, and is dropped
+/// where both ends have become one; `thumbnails` may be shorter than the ids go.
+MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
+                          const std::vector<StoredLoopEdge>& loops = {},
+                          const std::vector<std::string>& thumbnails = {});
+
+struct MapFileOptions {
+  /// Float descriptors as they are, four times as large, instead of one byte a number.
+  bool exact_descriptors = false;
+};
+
+/// Writes the file whole or not at all; temporary files that processes left when they were killed
+/// while saving to the same path are removed. Throws InputError if it cannot be written,
+/// ContractError if the frames do not fit the header's traits or each other, or hold values that
+/// are not finite.
+void save_map(const std::string& path, const MapSnapshot& snapshot,
+              const MapFileOptions& options = {});
+
+/// A map as it was saved.
+struct StoredMap {
+  MapHeader header;
+  Map map;
+  std::vector<StoredLoopEdge> loops;
+  std::vector<std::string> thumbnails;  ///< as in MapSnapshot
+};
+
+/// Throws InputError, naming the file and what is wrong with it, unless it is a whole and sound map
+/// file of a version that this program knows.
+StoredMap load_map(const std::string& path);
+
+/// The same for a file that is in memory already; `where` stands for it in messages.
+StoredMap parse_map(const char* bytes, std::size_t size, const std::string& where);
+
+/// The sections of a file, known to this program or not.
+struct MapFileSection {
+  std::string id;
+  std::uint32_t version = 0;
+  std::size_t size = 0;  ///< bytes
+};
+/// Throws InputError as load_map does for files that are no map files or are not whole.
+std::vector<MapFileSection> list_map_sections(const std::string& path);
+
+/// Throws InputError, in which `where` is the map's file and `current` what is in use now, if
+/// descriptors of the two cannot be compared: another network, or another extractor.
+void require_same_features(const MapHeader& map, const MapHeader& current,
+                           const std::string& where);
+/// Throws InputError if keypoints of the two cameras cannot be adjusted together: another
+/// projection. Localization in a map does not need this.
+void require_same_camera(const MapHeader& map, const MapHeader& current, const std::string& where);
+
+}  // namespace dxslam

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "map_files/map_file.h"
+
+#include <fmt/format.h>
+
+#include "io/test_folder.h"
+#include "map_files/crc32c.h"
+#include "map_files/map_sections.h"
+#include "map_files/test_map_files.h"
+
+namespace dxslam {
+namespace {
+
+TEST(MapFile, HoldsAllOfAMap) {
+  for (const bool binary : {false, true}) {
+    const TestFolder folder;
+    const MapSnapshot snapshot = sample_snapshot(6, binary);
+    save_map(folder / "m.dxmap", snapshot);
+    const StoredMap stored = load_map(folder / "m.dxmap");
+    const Map original(snapshot.parts);
+    expect_same_maps(original, stored.map);
+    expect_consistent(stored.map);
+    EXPECT_EQ(descriptor_difference(original, stored.map) > 0.0, !binary);
+    EXPECT_LT(descriptor_difference(original, stored.map), 0.004);
+    EXPECT_EQ(stored.header.extractor, snapshot.header.extractor);
+    EXPECT_EQ(stored.header.model_hash, snapshot.header.model_hash);
+    EXPECT_EQ(stored.header.traits.binary, binary);
+    EXPECT_EQ(stored.header.traits.dimension, 32);
+    EXPECT_EQ(stored.header.traits.global_dimension, binary ? 0 : 16);
+    EXPECT_EQ(stored.header.traits.max_distance, snapshot.header.traits.max_distance);
+    EXPECT_EQ(stored.header.camera.fx, snapshot.header.camera.fx);
+    EXPECT_EQ(stored.header.camera.max_depth, snapshot.header.camera.max_depth);
+    ASSERT_EQ(stored.loops.size(), 1U);
+    EXPECT_EQ(stored.loops[0].b, 2U);  // keyframe 3, since keyframe 2 was removed
+    EXPECT_LT((stored.loops[0].a_from_b.matrix() - snapshot.loops[0].a_from_b.matrix()).norm(),
+              1e-14);
+    const std::vector<std::string> thumbnails = {"jpeg", "", "more jpeg", "", "", "", ""};
+    EXPECT_EQ(stored.thumbnails, thumbnails);
+  }
+}
+
+TEST(MapFile, KeepsDescriptorsExactlyWhereAsked) {
+  const TestFolder folder;
+  const MapSnapshot snapshot = sample_snapshot();
+  save_map(folder / "m.dxmap", snapshot, {true});
+  EXPECT_EQ(descriptor_difference(Map(snapshot.parts), load_map(folder / "m.dxmap").map), 0.0);
+}
+
+TEST(MapFile, IsTheSameAfterLoadingAndSaving) {
+  const TestFolder folder;
+  save_map(folder / "a", sample_snapshot());
+  const StoredMap stored = load_map(folder / "a");
+  save_map(folder / "b", take_snapshot(stored.header, stored.map, stored.loops, stored.thumbnails));
+  const StoredMap again = load_map(folder / "b");
+  expect_same_maps(stored.map, again.map);
+  EXPECT_EQ(descriptor_difference(stored.map, again.map), 0.0);
+}
+
+TEST(MapFile, HoldsAnEmptyMap) {
+  const TestFolder folder;
+  save_map(folder / "m", take_snapshot(sample_header(), Map()));
+  EXPECT_EQ(load_map(folder / "m").map.keyframe_count(), 0U);
+}
+
+TEST(MapFile, HoldsKeyframesWithoutKeypoints) {
+  const TestFolder folder;
+  Map map = sample_map(4);
+  map.add_keyframe(std::make_shared<Frame>(), SE3(), 1);
+  save_map(folder / "m", take_snapshot(sample_header(), map));
+  expect_consistent(load_map(folder / "m").map);
+}
+
+TEST(MapFile, MovesLoopsOfRemovedKeyframesToTheirAnchors) {
+  Map map = sample_map(5);  // 2 was removed and hangs on 1
+  const Map::Anchor anchor = map.anchor_of(2);
+  ASSERT_EQ(anchor.keyframe, 1U);
+  const SE3 a_from_b(so3_exp({0.1, 0, 0}), {1, 2, 3});
+  const MapSnapshot snapshot =
+      take_snapshot(sample_header(), map, {{4, 2, a_from_b}, {1, 2, SE3()}});
+  ASSERT_EQ(snapshot.loops.size(), 1U);
+  EXPECT_EQ(snapshot.loops[0].a, 3U);
+  EXPECT_EQ(snapshot.loops[0].b, 1U);
+  const SE3 expected = a_from_b * anchor.anchor_from_camera.inverse();
+  EXPECT_LT((snapshot.loops[0].a_from_b.matrix() - expected.matrix()).norm(), 1e-12);
+}
+
+TEST(MapFile, DoesNotSaveWhatCouldNotBeLoaded) {
+  const TestFolder folder;
+  const auto expect_refused = [&](const auto& spoil) {
+    MapSnapshot snapshot = sample_snapshot();
+    auto frame = std::make_shared<Frame>(*snapshot.parts.keyframes[1].frame);
+    frame->descriptors = frame->descriptors.clone();
+    spoil(*frame);
+    snapshot.parts.keyframes[1].frame = frame;
+    EXPECT_THROW(save_map(folder / "m", snapshot), ContractError);
+    EXPECT_FALSE(std::filesystem::exists(folder / "m"));
+  };
+  expect_refused([](Frame& f) { f.descriptors.at<float>(1, 1) = std::nanf(""); });
+  expect_refused([](Frame& f) { f.pixels[0].x() = std::nanf(""); });
+  expect_refused([](Frame& f) { f.depths[0] = -1.0F; });
+  expect_refused([](Frame& f) { f.sigmas[0] = 0.0F; });
+  expect_refused([](Frame& f) { f.scores.pop_back(); });
+  expect_refused([](Frame& f) { f.global.resize(5); });
+  expect_refused([](Frame& f) { f.descriptors.convertTo(f.descriptors, CV_8U); });
+  MapSnapshot snapshot = sample_snapshot();
+  snapshot.thumbnails.pop_back();
+  EXPECT_THROW(save_map(folder / "m", snapshot), ContractError);
+}
+
+// What a later program may do: more sections, some of which must be understood.
+std::string with_section(const MapSnapshot& snapshot, const char* id, std::uint32_t version,
+                         bool required) {
+  SectionWriter file(1000);
+  file.begin(id, version, required);
+  file.put_text("from the future");
+  write_header(snapshot.header, file);
+  write_keyframes(snapshot.parts, file);
+  write_keypoints(snapshot.parts, snapshot.header.traits, DescriptorCoding::kInt8, file);
+  write_globals(snapshot.parts, snapshot.header.traits, DescriptorCoding::kInt8, file);
+  write_points(snapshot.parts, file);
+  return file.finish();
+}
+
+TEST(MapFile, SkipsSectionsItNeedNotKnow) {
+  const MapSnapshot snapshot = sample_snapshot();
+  for (const char* id : {"NEWS", "LOOP"}) {
+    const std::string file = with_section(snapshot, id, 2, false);
+    const StoredMap stored = parse_map(file.data(), file.size(), "f");
+    expect_same_maps(stored.map, Map(snapshot.parts));
+    EXPECT_TRUE(stored.loops.empty());
+  }
+}
+
+TEST(MapFile, RefusesSectionsItWouldHaveToKnow) {
+  const MapSnapshot snapshot = sample_snapshot();
+  for (const char* id : {"NEWS", "KEYF"}) {
+    const std::string file = with_section(snapshot, id, 2, true);
+    expect_input_error([&] { parse_map(file.data(), file.size(), "f"); },
+                       {id, "version 2", "a newer dxslam wrote it"});
+  }
+}
+
+TEST(MapFile, RefusesAnotherFormat) {
+  const TestFolder folder;
+  save_map(folder / "m", sample_snapshot());
+  std::string file = folder.read("m");
+  file[8] = 2;
+  const std::uint32_t checksum = crc32c(file.data(), 28);
+  std::memcpy(&file[28], &checksum, sizeof checksum);
+  expect_input_error([&] { parse_map(file.data(), file.size(), "f"); }, {"f: ", "format 2"});
+}
+
+TEST(MapFile, RefusesFilesWithoutANeededSection) {
+  SectionWriter file(1000);
+  write_header(sample_header(), file);
+  const std::string bytes = file.finish();
+  expect_input_error([&] { parse_map(bytes.data(), bytes.size(), "f"); }, {"is missing"});
+}
+
+TEST(MapFile, RefusesWhatIsNoFile) {
+  const TestFolder folder;
+  expect_input_error([&] { load_map(folder / "none"); }, {"none: no such file", "dxslam map"});
+  expect_input_error([&] { load_map(folder.path()); }, {"not a regular file"});
+  folder.write("trajectory.txt", "1.0 0 0 0 0 0 0 1\n");
+  expect_input_error([&] { load_map(folder / "trajectory.txt"); }, {"is no dxslam map"});
+  expect_input_error([&] { save_map(folder / "no/m", sample_snapshot()); }, {"cannot be written"});
+}
+
+TEST(MapFile, ListsItsSections) {
+  const TestFolder folder;
+  save_map(folder / "m", sample_snapshot());
+  std::string ids;
+  std::size_t size = 32;
+  for (const MapFileSection& s : list_map_sections(folder / "m")) {
+    ids += s.id + " ";
+    size += s.size + 32;
+    EXPECT_EQ(s.version, 1U);
+  }
+  EXPECT_EQ(ids, "HEAD KEYF KEYP GLOB PNTS LOOP THUM ");
+  EXPECT_EQ(size, std::filesystem::file_size(folder / "m"));
+}
+
+TEST(MapHeader, OfAnotherNetworkIsRefused) {
+  const MapHeader map = sample_header();
+  MapHeader current = map;
+  EXPECT_NO_THROW(require_same_features(map, current, "m.dxmap"));
+  current.extractor = "renamed";
+  EXPECT_NO_THROW(require_same_features(map, current, "m.dxmap")) << "the same weights";
+  current = map;
+  current.model_hash = std::string(64, 'b');
+  expect_input_error([&] { require_same_features(map, current, "m.dxmap"); },
+                     {"m.dxmap: the map was made with features `sample` (32 floats)", "training"});
+  current.model_hash.clear();
+  EXPECT_NO_THROW(require_same_features(map, current, "m.dxmap")) << "unknown weights";
+  expect_input_error([&] { require_same_features(map, sample_header(true), "m"); },
+                     {"`sample` (32 floats), in use are `orb` (32 bytes)"});
+}
+
+TEST(MapHeader, OfAnotherCameraIsRefused) {
+  const MapHeader map = sample_header();
+  MapHeader current = map;
+  current.camera.k1 = 0.1;
+  EXPECT_NO_THROW(require_same_camera(map, current, "m.dxmap"));
+  current.camera.fx += 1.0;
+  expect_input_error([&] { require_same_camera(map, current, "m.dxmap"); },
+                     {"m.dxmap", "fx 525.00", "fx 526.00"});
+}
+
+}  // namespace
+}  // namespace dxslam
