@@ -57,6 +57,7 @@ FramePtr make_frame(const RgbdImage& image, const Features& features, const Came
   frame->stamp = image.stamp;
   frame->descriptors = features.descriptors;
   frame->global = features.global;
+  frame->encoder = features.encoder;
   const std::size_t n = features.size();
   frame->pixels.reserve(n);
   frame->depths.reserve(n);

@@ -32,6 +32,7 @@ struct Frame {
   std::vector<float> sigmas;            ///< N pixels
   cv::Mat descriptors;                  ///< N x D, as in Features
   std::vector<float> global;            ///< as in Features
+  cv::Mat encoder;                      ///< as in Features; dropped once it has served
 
   std::size_t size() const { return pixels.size(); }
   bool has_depth(std::size_t i) const { return depths[i] > 0.0F; }

@@ -43,8 +43,8 @@ void LocalMapper::refine(MappingReport& report) {
   report.culled_keyframes = cull_keyframes(report.keyframe);
 }
 
-LocalMapPtr LocalMapper::local_map() {
-  return make_local_map(map_, map_.last_keyframe(), ++version_, options_.local_map);
+LocalMapPtr LocalMapper::local_map_around(KeyframeId keyframe) {
+  return make_local_map(map_, keyframe, ++version_, options_.local_map);
 }
 
 void LocalMapper::bind_matches(const KeyframeRequest& request, KeyframeId keyframe) {
@@ -93,8 +93,8 @@ int LocalMapper::cull_recent_points() {
   return culled;
 }
 
-int LocalMapper::cull_keyframes(KeyframeId newest) {
-  int culled = 0;
+std::vector<KeyframeId> LocalMapper::cull_keyframes(KeyframeId newest) {
+  std::vector<KeyframeId> culled;
   for (const Covisible& c : std::vector<Covisible>(map_.keyframe(newest).covisibles)) {
     const Keyframe& k = map_.keyframe(c.keyframe);
     // The last few are still being matched with, the first holds the world frame.
@@ -108,8 +108,8 @@ int LocalMapper::cull_keyframes(KeyframeId newest) {
       if (others >= options_.redundant_observers) ++redundant;
     }
     if (points == 0 || redundant > options_.redundant_share * points) {
+      culled.push_back(k.id);
       map_.remove_keyframe(k.id);
-      ++culled;
     }
   }
   return culled;

@@ -21,7 +21,7 @@ struct MappingReport {
   int triangulated_points = 0;
   int fused_points = 0;
   int culled_points = 0;
-  int culled_keyframes = 0;
+  std::vector<KeyframeId> culled_keyframes;
   int bundle_keyframes = 0;
   int bundle_points = 0;
   int bundle_observations = 0;
@@ -44,9 +44,15 @@ class LocalMapper {
   /// Adjusts all keyframes and points together. Returns the observations unbound as outliers.
   int adjust_full_bundle(const BundleOptions& options);
 
+  /// Snapshot around a keyframe.
+  LocalMapPtr local_map_around(KeyframeId keyframe);
   /// Snapshot around the newest keyframe. There must be one.
-  LocalMapPtr local_map();
+  LocalMapPtr local_map() { return local_map_around(map_.last_keyframe()); }
   const Map& map() const { return map_; }
+  /// For those who change the map between the calls above, in the same thread: loop closing.
+  Map& map() { return map_; }
+  /// Goes on with a map made before, in place of an empty one.
+  void set_map(Map map) { map_ = std::move(map); }
 
  private:
   struct Recent {
@@ -58,7 +64,7 @@ class LocalMapper {
   int create_points_by_triangulation(KeyframeId keyframe);
   int fuse_with_neighbours(KeyframeId keyframe);
   int cull_recent_points();
-  int cull_keyframes(KeyframeId newest);
+  std::vector<KeyframeId> cull_keyframes(KeyframeId newest);
   void adjust_local_bundle(KeyframeId keyframe, MappingReport& report);
 
   Camera camera_;

@@ -86,7 +86,8 @@ TEST_F(LocalMapperTest, TriangulatesKeypointsWithoutDepth) {
 
 TEST_F(LocalMapperTest, CullsKeyframesThatShowNothingNew) {
   int culled = 0;
-  for (int k = 0; k < 12; ++k) culled += add(k, PointScene::pose(0.005 * k)).culled_keyframes;
+  for (int k = 0; k < 12; ++k)
+    culled += static_cast<int>(add(k, PointScene::pose(0.005 * k)).culled_keyframes.size());
   EXPECT_GT(culled, 2);
   EXPECT_EQ(mapper_.map().keyframe_count(), static_cast<std::size_t>(12 - culled));
 }

@@ -2,23 +2,40 @@
 // Copyright 2026 The dxslam authors
 #include "slam/system.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/options.h"
 
 namespace dxslam {
+namespace {
+
+SystemOptions checked(const SystemOptions& options) {
+  validate_options("", options);
+  if (options.mode != "slam" && options.mode != "localization") {
+    throw InputError(
+        fmt::format("option mode is `{}`, expected slam or localization", options.mode));
+  }
+  return options;
+}
+
+}  // namespace
 
 System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor,
                const SystemOptions& options, FrameCallback on_frame)
     : camera_(camera),
-      options_((validate_options("", options), options)),
+      options_(checked(options)),
       extractor_(std::move(extractor)),
       on_frame_(std::move(on_frame)),
       tracker_(camera, extractor_->traits(), options.tracking),
-      mapper_(camera, extractor_->traits(), options.mapping),
+      backend_(camera, *extractor_, options_),
       images_(static_cast<std::size_t>(options.queued_frames)),
       extracted_(static_cast<std::size_t>(options.queued_frames)),
-      requests_(static_cast<std::size_t>(options.queued_keyframes)) {
+      tasks_(static_cast<std::size_t>(options.queued_keyframes)) {
   camera_.validate("calibration");
+  extractor_->keep_encoder(true);
   if (options_.deterministic) return;
   threads_.emplace_back([this] { guard(&System::run_extraction); });
   threads_.emplace_back([this] { guard(&System::run_tracking); });
@@ -30,25 +47,43 @@ System::~System() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-void System::process(const RgbdImage& image) {
+void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
+  require(frames_.empty(), "a map must be loaded before the first image");
+  require(map.keyframe_count() > 0, "a map to go on with must not be empty");
+  backend_.load(std::move(map), std::move(closed_loops));
+  map_loaded_ = true;
+  next_begins_sequence_ = true;
+}
+
+System::Incoming System::incoming(const RgbdImage& image) {
   require(!finished_, "no image can be processed after finish()");
+  if (!mapping() && !map_loaded_) {
+    throw InputError("localization mode has no map, expected one to be loaded");
+  }
+  return {image, std::exchange(next_begins_sequence_, false)};
+}
+
+void System::process(const RgbdImage& image) {
+  Incoming next = incoming(image);
   if (!options_.deterministic) {
-    images_.push(image);
+    images_.push(std::move(next));
     rethrow();
     return;
   }
-  const std::optional<KeyframeRequest> request = track(extract(image));
+  const std::optional<KeyframeRequest> request = track(extract(next));
   if (request) map_keyframe(*request);
 }
 
 bool System::try_process(const RgbdImage& image) {
-  require(!finished_, "no image can be processed after finish()");
   if (options_.deterministic) {
     process(image);
     return true;
   }
   live_ = true;
-  const bool taken = images_.try_push(image);
+  Incoming next = incoming(image);
+  const bool begins = next.begins_sequence;
+  const bool taken = images_.try_push(std::move(next));
+  if (!taken) next_begins_sequence_ = begins;
   rethrow();
   return taken;
 }
@@ -60,27 +95,36 @@ void System::finish() {
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
   rethrow();
-  if (options_.final_bundle && map().keyframe_count() > 1) {
-    const Stopwatch watch;
-    mapper_.adjust_full_bundle(options_.full_bundle);
-    times_.add("full_bundle", watch.ms());
+  hang_first_frames();
+  const Stopwatch watch;
+  backend_.finish();
+  times_.add("full_bundle", watch.ms());
+}
+
+void System::hang_first_frames() {
+  for (TrackedFrame& frame : frames_) {
+    if (frame.state != TrackingState::kTracking || frame.reference != kNoId) continue;
+    const auto began = std::find_if(roots_.begin(), roots_.end(), [&](const Root& root) {
+      return root.index == frame.index && root.stamp == frame.stamp;
+    });
+    if (began != roots_.end()) frame.reference = began->keyframe;
   }
 }
 
-System::Extracted System::extract(const RgbdImage& image) {
+System::Extracted System::extract(const Incoming& incoming) {
   const Stopwatch watch;
-  const Features features = extractor_->extract(image.color, false);
-  FramePtr frame = make_frame(image, features, camera_);
+  const Features features = extractor_->extract(incoming.image.color, false);
+  FramePtr frame = make_frame(incoming.image, features, camera_);
   const double ms = watch.ms();
   times_.add("extract", ms);
-  return {std::move(frame), ms};
+  return {std::move(frame), incoming.begins_sequence, ms};
 }
 
 std::optional<KeyframeRequest> System::track(const Extracted& extracted) {
   if (LocalMapPtr local_map = newest_local_map()) tracker_.set_local_map(std::move(local_map));
   const Stopwatch watch;
   std::optional<KeyframeRequest> request;
-  const TrackedFrame tracked = tracker_.track(extracted.frame, request);
+  const TrackedFrame tracked = track_or_relocalize(extracted, request);
   const double ms = watch.ms();
   times_.add("track", ms);
   times_.add("frame", extracted.ms + ms);
@@ -89,25 +133,106 @@ std::optional<KeyframeRequest> System::track(const Extracted& extracted) {
   return request;
 }
 
+TrackedFrame System::track_or_relocalize(const Extracted& extracted,
+                                         std::optional<KeyframeRequest>& request) {
+  const FramePtr& frame = extracted.frame;
+  if (extracted.begins_sequence) {
+    // What was seen last says nothing about where the new recording begins.
+    seeking_ = tracker_.has_local_map() || map_loaded_;
+    tracker_.restart();
+    newest_local_map();
+    lost_frames_ = 0;
+  }
+  TrackedFrame tracked;
+  if (seeking_) {
+    tracked.index = frame->index;
+    tracked.stamp = frame->stamp;
+    tracked.state = TrackingState::kLost;
+    tracked.keypoints = static_cast<int>(frame->size());
+  } else {
+    tracked = tracker_.track(frame, request);
+  }
+  if (tracked.state != TrackingState::kLost) {
+    lost_frames_ = 0;
+    return tracked;
+  }
+  if (std::optional<TrackedFrame> found = find_place(frame, request)) {
+    lost_frames_ = 0;
+    seeking_ = false;
+    return *found;
+  }
+  if (++lost_frames_ >= options_.new_map_after && mapping()) {
+    tracker_.restart();
+    newest_local_map();
+    lost_frames_ = 0;
+    seeking_ = false;
+  }
+  return tracked;
+}
+
+std::optional<TrackedFrame> System::find_place(const FramePtr& frame,
+                                               std::optional<KeyframeRequest>& request) {
+  const RelocalizationAnswer answer = ask_backend(frame);
+  if (!answer.local_map) return std::nullopt;
+  newest_local_map();  // of where tracking was before
+  const TrackedFrame tracked = tracker_.resume(
+      frame, answer.local_map, answer.report.world_from_camera, answer.report.points, request);
+  if (tracked.state != TrackingState::kTracking) return std::nullopt;
+  return tracked;
+}
+
+RelocalizationAnswer System::ask_backend(const FramePtr& frame) {
+  if (options_.deterministic) return relocalize(*frame);
+  const auto answer = std::make_shared<std::promise<RelocalizationAnswer>>();
+  std::future<RelocalizationAnswer> coming = answer->get_future();
+  if (!tasks_.push([this, frame, answer] { answer->set_value(relocalize(*frame)); })) return {};
+  // If mapping fails meanwhile, the promise is never kept; its error comes out of process().
+  while (coming.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+    if (has_error()) return {};
+  }
+  return coming.get();
+}
+
+RelocalizationAnswer System::relocalize(const Frame& frame) {
+  const Stopwatch watch;
+  RelocalizationAnswer answer = backend_.relocalize(frame);
+  times_.add("relocalize", watch.ms());
+  return answer;
+}
+
 void System::map_keyframe(const KeyframeRequest& request) {
+  if (!mapping()) {
+    publish(backend_.follow(request));
+    return;
+  }
   const Stopwatch insert_watch;
-  MappingReport report = mapper_.insert(request);
-  publish_local_map();
+  publish(backend_.insert(request));
+  if (request.reference == kNoId) {
+    roots_.push_back({request.frame->index, request.frame->stamp, backend_.report().keyframe});
+  }
   times_.add("map_insert", insert_watch.ms());
   const Stopwatch refine_watch;
-  mapper_.refine(report);
-  publish_local_map();
+  publish(backend_.refine());
   times_.add("map_refine", refine_watch.ms());
+  const Stopwatch loop_watch;
+  if (LocalMapPtr moved = backend_.close_loops()) publish(std::move(moved));
+  times_.add("loop_closing", loop_watch.ms());
+  count(backend_.report());
+}
+
+void System::count(const MappingReport& report) {
   ++totals_.keyframes;
   totals_.new_points += report.new_points;
   totals_.triangulated_points += report.triangulated_points;
   totals_.fused_points += report.fused_points;
   totals_.culled_points += report.culled_points;
-  totals_.culled_keyframes += report.culled_keyframes;
+  totals_.culled_keyframes += static_cast<int>(report.culled_keyframes.size());
+  totals_.bundle_keyframes += report.bundle_keyframes;
+  totals_.bundle_observations += report.bundle_observations;
+  totals_.outlier_observations += report.outlier_observations;
 }
 
-void System::publish_local_map() {
-  LocalMapPtr local_map = mapper_.local_map();
+void System::publish(LocalMapPtr local_map) {
   const std::lock_guard lock(local_map_mutex_);
   published_ = std::move(local_map);
   local_map_changed_.notify_all();
@@ -119,32 +244,33 @@ LocalMapPtr System::newest_local_map() {
 }
 
 void System::run_extraction() {
-  while (std::optional<RgbdImage> image = images_.pop()) {
-    if (!extracted_.push(extract(*image))) break;
+  while (std::optional<Incoming> next = images_.pop()) {
+    if (!extracted_.push(extract(*next))) break;
   }
   extracted_.close();
 }
 
 void System::run_tracking() {
   while (std::optional<Extracted> extracted = extracted_.pop()) {
-    const bool first = !tracker_.has_local_map();
     std::optional<KeyframeRequest> request = track(*extracted);
     if (!request) continue;
+    const bool first = !tracker_.has_local_map();
+    Task task = [this, asked = std::move(*request)] { map_keyframe(asked); };
     if (live_ && !first) {
-      if (!requests_.try_push(std::move(*request))) ++totals_.dropped_requests;
+      if (!tasks_.try_push(std::move(task))) ++totals_.dropped_requests;
       continue;
     }
-    if (!requests_.push(std::move(*request))) break;
+    if (!tasks_.push(std::move(task))) break;
     if (!first) continue;
     // There is nothing to track against before the first keyframe is in the map.
     std::unique_lock lock(local_map_mutex_);
     local_map_changed_.wait(lock, [&] { return published_ != nullptr || stopped_; });
   }
-  requests_.close();
+  tasks_.close();
 }
 
 void System::run_mapping() {
-  while (std::optional<KeyframeRequest> request = requests_.pop()) map_keyframe(*request);
+  while (const std::optional<Task> task = tasks_.pop()) (*task)();
 }
 
 void System::guard(void (System::*body)()) {
@@ -162,10 +288,15 @@ void System::guard(void (System::*body)()) {
 void System::close_queues() {
   images_.close();
   extracted_.close();
-  requests_.close();
+  tasks_.close();
   const std::lock_guard lock(local_map_mutex_);
   stopped_ = true;
   local_map_changed_.notify_all();
+}
+
+bool System::has_error() {
+  const std::lock_guard lock(error_mutex_);
+  return error_ != nullptr;
 }
 
 void System::rethrow() {
@@ -173,25 +304,54 @@ void System::rethrow() {
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
 }
 
-Trajectory System::trajectory() const {
+std::vector<ComponentSummary> System::components() const {
+  std::vector<ComponentSummary> all(map().component_count());
+  for (std::size_t c = 0; c < all.size(); ++c) all[c].component = static_cast<std::uint32_t>(c);
+  for (const KeyframeId id : map().keyframe_ids()) ++all[map().keyframe(id).component].keyframes;
+  for (const PointId id : map().point_ids()) {
+    const KeyframeId seen_by = map().point(id).observations.front().keyframe;
+    ++all[map().keyframe(seen_by).component].points;
+  }
+  for (const TrackedFrame& frame : frames_) {
+    if (const auto component = component_of(frame)) ++all[*component].frames;
+  }
+  const auto joined = [](const ComponentSummary& c) { return c.keyframes == 0; };
+  all.erase(std::remove_if(all.begin(), all.end(), joined), all.end());
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return a.frames != b.frames ? a.frames > b.frames : a.keyframes > b.keyframes;
+  });
+  return all;
+}
+
+std::optional<std::uint32_t> System::component_of(const TrackedFrame& frame) const {
+  if (frame.state != TrackingState::kTracking) return std::nullopt;
+  if (frame.reference == kNoId) return std::nullopt;
+  return map().keyframe(map().anchor_of(frame.reference).keyframe).component;
+}
+
+Trajectory System::trajectory(std::optional<std::uint32_t> component) const {
+  const auto all = components();
+  if (all.empty()) return {};
+  const std::uint32_t wanted = component.value_or(all.front().component);
   Trajectory trajectory;
   for (const TrackedFrame& frame : frames_) {
-    if (frame.state != TrackingState::kTracking) continue;
-    SE3 pose = frame.world_from_camera;
-    if (frame.reference != kNoId) {
-      const Map::Anchor anchor = map().anchor_of(frame.reference);
-      pose = map().keyframe(anchor.keyframe).world_from_camera * anchor.anchor_from_camera *
-             frame.reference_from_camera;
-    }
-    trajectory.push_back({frame.stamp, pose});
+    if (component_of(frame) != wanted) continue;
+    const Map::Anchor anchor = map().anchor_of(frame.reference);
+    trajectory.push_back({frame.stamp, map().keyframe(anchor.keyframe).world_from_camera *
+                                           anchor.anchor_from_camera *
+                                           frame.reference_from_camera});
   }
   return trajectory;
 }
 
-Trajectory System::keyframe_trajectory() const {
+Trajectory System::keyframe_trajectory(std::optional<std::uint32_t> component) const {
+  const auto all = components();
+  if (all.empty()) return {};
+  const std::uint32_t wanted = component.value_or(all.front().component);
   Trajectory trajectory;
   for (const KeyframeId id : map().keyframe_ids()) {
     const Keyframe& keyframe = map().keyframe(id);
+    if (keyframe.component != wanted) continue;
     trajectory.push_back({keyframe.frame->stamp, keyframe.world_from_camera});
   }
   return trajectory;

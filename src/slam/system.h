@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -12,7 +13,7 @@
 
 #include "core/trajectory.h"
 #include "features/extractor.h"
-#include "mapping/local_mapper.h"
+#include "slam/backend.h"
 #include "slam/bounded_queue.h"
 #include "slam/stage_times.h"
 #include "slam/system_options.h"
@@ -28,12 +29,24 @@ struct MappingTotals {
   int fused_points = 0;
   int culled_points = 0;
   int culled_keyframes = 0;
-  int dropped_requests = 0;  ///< keyframes given up since mapping was busy (real time only)
+  int bundle_keyframes = 0;      ///< moved by local bundle adjustment, summed over keyframes
+  int bundle_observations = 0;   ///< in it
+  int outlier_observations = 0;  ///< unbound by it
+  int dropped_requests = 0;      ///< keyframes given up since mapping was busy (real time only)
 };
 
-/// The whole system (paper, Fig. 1): feature extraction, tracking and local mapping, each in its
-/// own thread, joined by bounded queues. In deterministic mode the same steps run one after another
-/// in the caller's thread, and equal input gives equal output to the bit.
+/// Frames and keyframes whose poses are known relative to one another: one map of several.
+struct ComponentSummary {
+  std::uint32_t component = 0;
+  std::size_t keyframes = 0;
+  std::size_t points = 0;
+  std::size_t frames = 0;  ///< tracked in it
+};
+
+/// The whole system (paper, Fig. 1): feature extraction, tracking, and mapping with loop closing
+/// and relocalization, each in its own thread, joined by bounded queues. In deterministic mode the
+/// same steps run one after another in the caller's thread, and equal input gives equal output to
+/// the bit.
 ///
 /// process(), try_process() and finish() belong to one thread; on_frame is called by the tracking
 /// thread (in deterministic mode by the caller's). Exceptions of the inner threads come out of the
@@ -49,6 +62,12 @@ class System {
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
+  /// Goes on with a map made before: the first frames look for their place in it. Before the first
+  /// image only. Throws InputError in localization mode without a map (at the first image).
+  void load_map(Map map, std::vector<LoopEdge> closed_loops);
+  /// The next image is of another recording: it may be anywhere in the map.
+  void begin_sequence() { next_begins_sequence_ = true; }
+
   /// Takes the next image in time order; waits while the queue is full.
   void process(const RgbdImage& image);
   /// The same for live input: returns false, dropping the image, instead of waiting; mapping never
@@ -60,25 +79,55 @@ class System {
 
   /// Every frame given, in order.
   const std::vector<TrackedFrame>& frames() const { return frames_; }
-  /// Poses of the tracked frames as the final map has them.
-  Trajectory trajectory() const;
-  /// Poses of the keyframes.
-  Trajectory keyframe_trajectory() const;
-  const Map& map() const { return mapper_.map(); }
+  /// All maps there are, the one with most tracked frames first.
+  std::vector<ComponentSummary> components() const;
+  /// Poses of the frames tracked in one component, as the final map has them; of the first of
+  /// components() unless said.
+  Trajectory trajectory(std::optional<std::uint32_t> component = std::nullopt) const;
+  /// Poses of the keyframes, likewise.
+  Trajectory keyframe_trajectory(std::optional<std::uint32_t> component = std::nullopt) const;
+  const Map& map() const { return backend_.map(); }
+  const Backend& backend() const { return backend_; }
   const MappingTotals& mapping_totals() const { return totals_; }
   const StageTimes& times() const { return times_; }
   const FeatureExtractor& extractor() const { return *extractor_; }
 
  private:
+  struct Incoming {
+    RgbdImage image;
+    bool begins_sequence = false;
+  };
   struct Extracted {
     FramePtr frame;
+    bool begins_sequence = false;
     double ms = 0.0;  // what extraction took
   };
-  Extracted extract(const RgbdImage& image);
+  using Task = std::function<void()>;  // for the mapping thread
+
+  /// The keyframe that a component began with, and its image.
+  struct Root {
+    std::int64_t index = 0;
+    double stamp = 0.0;
+    KeyframeId keyframe = kNoId;
+  };
+
+  Incoming incoming(const RgbdImage& image);
+  Extracted extract(const Incoming& incoming);
   std::optional<KeyframeRequest> track(const Extracted& extracted);
+  TrackedFrame track_or_relocalize(const Extracted& extracted,
+                                   std::optional<KeyframeRequest>& request);
+  std::optional<TrackedFrame> find_place(const FramePtr& frame,
+                                         std::optional<KeyframeRequest>& request);
+  RelocalizationAnswer ask_backend(const FramePtr& frame);
   void map_keyframe(const KeyframeRequest& request);
-  void publish_local_map();
+  RelocalizationAnswer relocalize(const Frame& frame);
+  void publish(LocalMapPtr local_map);
   LocalMapPtr newest_local_map();
+  void count(const MappingReport& report);
+  void hang_first_frames();
+  std::optional<std::uint32_t> component_of(const TrackedFrame& frame) const;
+  bool has_error();
+  bool mapping() const { return options_.mode == "slam"; }
 
   void run_extraction();
   void run_tracking();
@@ -92,14 +141,19 @@ class System {
   std::unique_ptr<FeatureExtractor> extractor_;
   FrameCallback on_frame_;
   Tracker tracker_;
-  LocalMapper mapper_;
+  Backend backend_;
   std::vector<TrackedFrame> frames_;
+  std::vector<Root> roots_;
   MappingTotals totals_;
   StageTimes times_;
+  bool next_begins_sequence_ = false;
+  bool seeking_ = false;  // there is a map, but where in it is not known
+  int lost_frames_ = 0;   // in a row
+  bool map_loaded_ = false;
 
-  BoundedQueue<RgbdImage> images_;
+  BoundedQueue<Incoming> images_;
   BoundedQueue<Extracted> extracted_;
-  BoundedQueue<KeyframeRequest> requests_;
+  BoundedQueue<Task> tasks_;
   std::mutex local_map_mutex_;
   std::condition_variable local_map_changed_;
   LocalMapPtr published_;  // guarded by local_map_mutex_

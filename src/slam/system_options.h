@@ -5,7 +5,10 @@
 #include <string>
 
 #include "features/extractor_options.h"
+#include "loop_closing/loop_closer.h"
 #include "mapping/mapping_options.h"
+#include "place/loop_options.h"
+#include "relocalization/relocalization_options.h"
 #include "tracking/tracker_options.h"
 
 namespace dxslam {
@@ -13,6 +16,10 @@ namespace dxslam {
 /// Everything that can be set about the system; one default for every recording of a sensor.
 struct SystemOptions {
   std::string features = "auto";
+  std::string mode = "slam";
+  std::string vocabulary = "auto";
+  bool close_loops = true;
+  int new_map_after = 20;
   bool deterministic = false;
   int queued_frames = 2;
   int queued_keyframes = 1;
@@ -21,11 +28,21 @@ struct SystemOptions {
   ExtractorOptions extractor;
   TrackerOptions tracking;
   MappingOptions mapping;
+  LoopOptions loop_detection;
+  LoopCloserOptions loop_closing;
+  RelocalizationOptions relocalization;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("features", self.features, "",
           "extractor name or manifest file; auto: the best installed");
+    visit("mode", self.mode, "",
+          "slam, or localization: poses in a given map, which stays as it is");
+    visit("vocabulary", self.vocabulary, "",
+          "file; auto: the one shipped for the features; none: loops by global descriptor alone");
+    visit("close_loops", self.close_loops, "", "look for loops and correct the map by them");
+    visit("new_map_after", self.new_map_after, {1, 1000000}, "frames",
+          "lost in a row before a new map is begun beside the old one (slam)");
     visit("deterministic", self.deterministic, "",
           "one thread and exact arithmetic: repeatable to the bit");
     visit("queued_frames", self.queued_frames, {1, 1000}, "frames",
@@ -37,6 +54,9 @@ struct SystemOptions {
     visit.group("extractor", self.extractor);
     visit.group("tracking", self.tracking);
     visit.group("mapping", self.mapping);
+    visit.group("loop_detection", self.loop_detection);
+    visit.group("loop_closing", self.loop_closing);
+    visit.group("relocalization", self.relocalization);
   }
 };
 

@@ -20,6 +20,11 @@ int count_map_points(const std::vector<KnownPoint>& known) {
       std::count_if(known.begin(), known.end(), [](const KnownPoint& k) { return k.id != kNoId; }));
 }
 
+// Mapping keeps a copy of a frame of its own.
+bool is_same_image(const Frame& a, const Frame& b) {
+  return a.index == b.index && a.stamp == b.stamp && a.size() == b.size();
+}
+
 }  // namespace
 
 Tracker::Tracker(const Camera& camera, const DescriptorTraits& traits,
@@ -39,9 +44,8 @@ void Tracker::set_local_map(LocalMapPtr local_map) {
     }
   }
   if (!local_ || local_->reference != local_map->reference) {
-    for (std::size_t i = 0; last_.frame == local_map->reference_frame && i < last_.points.size();
-         ++i) {
-      last_.points[i] = local_map->reference_points[i];
+    if (last_.frame && is_same_image(*last_.frame, *local_map->reference_frame)) {
+      last_.points = local_map->reference_points;
     }
   }
   local_ = std::move(local_map);
@@ -58,6 +62,45 @@ TrackedFrame Tracker::track(const FramePtr& frame, std::optional<KeyframeRequest
     estimate = track_last_frame(*frame, grid);
     if (estimate) estimate = track_local_map(*frame, grid, std::move(*estimate));
   }
+  return conclude(frame, estimate, request);
+}
+
+TrackedFrame Tracker::resume(const FramePtr& frame, LocalMapPtr local_map,
+                             const SE3& world_from_camera, const std::vector<PointId>& points,
+                             std::optional<KeyframeRequest>& request) {
+  require(points.size() == frame->size(), "one point a keypoint is needed to resume tracking");
+  const Tracker before = *this;
+  restart();
+  local_ = std::move(local_map);
+  Estimate found;
+  found.world_from_camera = world_from_camera;
+  found.recovered = true;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const int index = points[i] == kNoId ? -1 : local_->find(points[i]);
+    if (index < 0) continue;
+    found.known.push_back(
+        {static_cast<int>(i), points[i], local_->positions[static_cast<std::size_t>(index)]});
+  }
+  request.reset();
+  const OptionalEstimate estimate =
+      track_local_map(*frame, KeypointGrid(frame->pixels), std::move(found));
+  TrackedFrame result = conclude(frame, estimate, request);
+  if (!estimate) *this = before;  // what was known before may still help
+  return result;
+}
+
+void Tracker::restart() {
+  local_.reset();
+  state_ = TrackingState::kNotStarted;
+  last_ = {};
+  last_from_current_ = SE3();
+  counts_.clear();
+  frames_since_keyframe_ = 0;
+  best_tracked_points_ = 0;
+}
+
+TrackedFrame Tracker::conclude(const FramePtr& frame, const OptionalEstimate& estimate,
+                               std::optional<KeyframeRequest>& request) {
   if (estimate) {
     state_ = TrackingState::kTracking;
     best_tracked_points_ = std::max(best_tracked_points_, estimate->map_points);

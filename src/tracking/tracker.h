@@ -30,6 +30,13 @@ class Tracker {
   /// Tracks one frame; frames come in time order. `request` is filled when it should become a
   /// keyframe (the first usable frame always does).
   TrackedFrame track(const FramePtr& frame, std::optional<KeyframeRequest>& request);
+  /// Goes on from a pose found by other means (relocalization): `frame` is at `world_from_camera`
+  /// in the world of `local_map` and sees `points`, one a keypoint. Lost still, if the local map
+  /// does not bear it out.
+  TrackedFrame resume(const FramePtr& frame, LocalMapPtr local_map, const SE3& world_from_camera,
+                      const std::vector<PointId>& points, std::optional<KeyframeRequest>& request);
+  /// Forgets the local map and all motion: the next usable frame starts a new one.
+  void restart();
 
  private:
   struct Estimate {
@@ -53,6 +60,8 @@ class Tracker {
   OptionalEstimate optimise(const Frame& frame, const SE3& start,
                             std::vector<KnownPoint> known) const;
   bool needs_keyframe(const Frame& frame, const Estimate& estimate) const;
+  TrackedFrame conclude(const FramePtr& frame, const OptionalEstimate& estimate,
+                        std::optional<KeyframeRequest>& request);
   TrackedFrame report(const FramePtr& frame, const OptionalEstimate& estimate) const;
   void remember(const FramePtr& frame, const OptionalEstimate& estimate);
   KeyframeRequest make_request(const FramePtr& frame, const Estimate& estimate);

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "features/extractor.h"
+#include "loop_closing/loop_closer.h"
+#include "mapping/local_mapper.h"
+#include "relocalization/relocalizer.h"
+#include "slam/loop_search.h"
+#include "slam/system_options.h"
+
+namespace dxslam {
+
+/// One candidate of one keyframe, and what became of it.
+struct LoopRecord {
+  std::int64_t frame = 0;  ///< of the query
+  KeyframeId query = kNoId;
+  KeyframeId candidate = kNoId;
+  double bow_score = 0.0;
+  double global_distance = 0.0;  ///< NaN where there is none
+  bool accepted = false;
+  std::string verdict;  ///< "accepted", or why not
+  std::string effect;   ///< on the map: none, weld, bend or join
+  int inliers = 0;
+  double contradiction = 0.0;  ///< metres between the loop and the map before
+  double largest_move = 0.0;   ///< metres, of a keyframe
+};
+
+/// Answer to a frame that asks where it is.
+struct RelocalizationAnswer {
+  RelocalizationReport report;
+  LocalMapPtr local_map;  ///< around the place; null if it was not found
+};
+
+/// Everything that changes or searches the map: local mapping, loop closing and relocalization
+/// (paper, Fig. 1). Owns the map; belongs to one thread.
+class Backend {
+ public:
+  /// `extractor` makes global descriptors of frames extracted before; it must outlive this.
+  /// `features` is the name by which a vocabulary is looked for.
+  Backend(const Camera& camera, FeatureExtractor& extractor, const SystemOptions& options);
+
+  /// Goes on with a map made before. The map must be empty so far.
+  void load(Map map, std::vector<LoopEdge> closed_loops);
+
+  /// The three steps for a new keyframe, in this order; each returns the local map for tracking to
+  /// go on with, the last one null where nothing has moved.
+  LocalMapPtr insert(const KeyframeRequest& request);
+  LocalMapPtr refine();
+  LocalMapPtr close_loops();
+
+  /// Localization only: the local map around the keyframe that shares most points with the frame.
+  LocalMapPtr follow(const KeyframeRequest& request);
+  RelocalizationAnswer relocalize(const Frame& frame);
+
+  /// Ends what runs in the background and, if so configured, adjusts the whole map once more.
+  void finish();
+
+  const Map& map() const { return mapper_.map(); }
+  const std::vector<LoopEdge>& closed_loops() const { return closer_.closed_loops(); }
+  const std::vector<LoopRecord>& loop_records() const { return records_; }
+  const std::string& loop_method() const { return search_.method(); }
+  /// Of the keyframe inserted last.
+  const MappingReport& report() const { return report_; }
+
+ private:
+  FramePtr keyframe_of(const Frame& frame);
+  std::vector<float> global_of(const Frame& frame);
+  void record(const LoopReport& report, const std::vector<LoopCandidate>& candidates);
+
+  SystemOptions options_;
+  FeatureExtractor& extractor_;
+  LocalMapper mapper_;
+  LoopSearch search_;
+  LoopCloser closer_;
+  Relocalizer relocalizer_;
+  GlobalIndex index_;
+  MappingReport report_;
+  std::vector<LoopRecord> records_;
+};
+
+}  // namespace dxslam
