@@ -165,19 +165,60 @@ void check_leaves(const VocabularyTree& tree, const std::vector<char>& leaf,
   }
 }
 
-// Inner nodes first, then the words by their ids, which the format numbers by their lines.
-std::vector<std::uint32_t> line_order(const VocabularyTree& tree) {
-  std::vector<std::uint32_t> inner;
-  std::vector<std::uint32_t> words;
-  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
-    (tree.is_word(i) ? words : inner).push_back(i);
+// Nodes in the order of their lines: parents before children and words by their ids, as the format
+// numbers them by their lines; and children of a node as they are, wherever the ids allow it.
+class LineOrder {
+ public:
+  explicit LineOrder(const VocabularyTree& tree)
+      : tree_(tree), placed_(tree.nodes.size(), 0), next_child_(tree.nodes.size(), 0) {
+    place(0);
+    for (const std::uint32_t word : words_by_id()) place_word(word);
   }
-  std::stable_sort(words.begin(), words.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return tree.nodes[a].word < tree.nodes[b].word;
-  });
-  inner.insert(inner.end(), words.begin(), words.end());
-  return inner;
-}
+  std::vector<std::uint32_t> nodes;
+
+ private:
+  std::vector<std::uint32_t> words_by_id() const {
+    std::vector<std::uint32_t> words;
+    for (std::uint32_t i = 0; i < tree_.nodes.size(); ++i) {
+      if (tree_.is_word(i)) words.push_back(i);
+    }
+    std::stable_sort(words.begin(), words.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return tree_.nodes[a].word < tree_.nodes[b].word;
+    });
+    return words;
+  }
+
+  void place_word(std::uint32_t word) {
+    std::vector<std::uint32_t> path;
+    for (std::uint32_t node = word; !placed_[node]; node = tree_.nodes[node].parent) {
+      path.push_back(node);
+    }
+    for (; !path.empty(); path.pop_back()) {
+      place_inner_siblings_before(path.back());
+      if (!placed_[path.back()]) place(path.back());
+    }
+  }
+
+  void place_inner_siblings_before(std::uint32_t node) {
+    const std::uint32_t parent = tree_.nodes[node].parent;
+    const std::vector<std::uint32_t>& siblings = tree_.nodes[parent].children;
+    std::size_t& next = next_child_[parent];
+    while (next < siblings.size()) {
+      const std::uint32_t sibling = siblings[next++];
+      if (sibling == node) break;
+      if (!placed_[sibling] && !tree_.is_word(sibling)) place(sibling);
+    }
+  }
+
+  void place(std::uint32_t node) {
+    placed_[node] = 1;
+    nodes.push_back(node);
+  }
+
+  const VocabularyTree& tree_;
+  std::vector<char> placed_;
+  std::vector<std::size_t> next_child_;  // of each node, the first child not looked at
+};
 
 int depth_of(const VocabularyTree& tree) {
   std::vector<int> level(tree.nodes.size(), 0);
@@ -220,7 +261,7 @@ VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where)
 }
 
 std::string format_dbow2_text(const VocabularyTree& tree) {
-  const std::vector<std::uint32_t> order = line_order(tree);
+  const std::vector<std::uint32_t> order = LineOrder(tree).nodes;
   std::vector<std::uint32_t> line_of(tree.nodes.size(), 0);
   for (std::uint32_t line = 0; line < order.size(); ++line) line_of[order[line]] = line;
   std::string text;

@@ -5,14 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-// One source, several instruction sets: the loader picks the best the CPU has (ifunc). Sanitizers
-// start before ifuncs are resolved, so their builds take the portable version.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    defined(__GNUC__) && !defined(__clang__)
-#define DXSLAM_SIMD __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define DXSLAM_SIMD
-#endif
+#include "core/simd.h"
+
 #define DXSLAM_INLINE [[gnu::always_inline]] inline
 
 namespace dxslam {

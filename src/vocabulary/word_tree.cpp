@@ -48,11 +48,11 @@ class TreeGrower {
 
   VocabularyTree grow(const TrainingProgress& progress) {
     const double goal = static_cast<double>(std::min(words_, static_cast<std::size_t>(rows_.rows)));
-    while (!open_.empty() && leaves_ < words_) {
+    while (!open_.empty() && (leaves_ < words_ || tree_.nodes.size() == 1)) {
       const Leaf leaf = open_.top();
       open_.pop();
-      const std::size_t room = words_ - leaves_ + 1;
-      divide(leaf, static_cast<int>(std::min<std::size_t>(room, options_.branching)));
+      const auto most_more = static_cast<std::size_t>(options_.branching - 1);
+      divide(leaf, static_cast<int>(std::min(words_ - leaves_, most_more)) + 1);
       if (progress) progress(std::min(1.0, static_cast<double>(leaves_) / goal));
     }
     tree_.descriptors = tree_.descriptors.clone();
@@ -62,7 +62,6 @@ class TreeGrower {
 
  private:
   void divide(const Leaf& leaf, int parts) {
-    if (parts < 2 && leaf.node != 0) return;
     cv::Mat members(0, rows_.cols, rows_.type());
     members.reserve(leaf.rows.size());
     std::vector<float> weights;
@@ -80,7 +79,7 @@ class TreeGrower {
     for (std::size_t c = 0; c < children.size(); ++c) {
       add_child(leaf, clusters.centres.row(static_cast<int>(c)), std::move(children[c]));
     }
-    leaves_ += children.size() - (leaf.node == 0 ? 0 : 1);
+    leaves_ += children.size() - 1;
   }
 
   void add_child(const Leaf& parent, const cv::Mat& centre, Leaf child) {
@@ -101,7 +100,7 @@ class TreeGrower {
   const VocabularyTrainingOptions& options_;
   std::mt19937_64 random_;
   std::size_t words_;
-  std::size_t leaves_ = 0;
+  std::size_t leaves_ = 1;  // the root, until it is divided
   VocabularyTree tree_;
   std::priority_queue<Leaf> open_;
 };
