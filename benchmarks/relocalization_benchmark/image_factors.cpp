@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "image_factors.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "io/low_light.h"
+
+namespace dxslam::benchmark {
+namespace {
+
+Query in_low_light(const Query& query, const Camera&) {
+  static const LowLight low_light;
+  Query dark = query;
+  dark.image.color = low_light.apply(query.image.color, query.image.index);
+  return dark;
+}
+
+void blank(Query& query, const cv::Rect& rect, double grey) {
+  const cv::Rect inside = rect & cv::Rect(0, 0, query.image.color.cols, query.image.color.rows);
+  query.image.color(inside).setTo(cv::Scalar::all(grey));
+  if (!query.image.depth.empty()) query.image.depth(inside).setTo(0.0);
+}
+
+// Boxes of one grey each until 30 % of the image is hidden.
+Query behind_patches(const Query& query, const Camera&) {
+  Query hidden = query;
+  hidden.image.color = query.image.color.clone();
+  hidden.image.depth = query.image.depth.clone();
+  const int width = query.image.color.cols, height = query.image.color.rows;
+  cv::Mat mask = cv::Mat::zeros(height, width, CV_8U);
+  std::mt19937 random(static_cast<unsigned>(query.image.index));
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  while (cv::countNonZero(mask) < 0.3 * width * height) {
+    const cv::Rect rect(below(width) - width / 12, below(height) - height / 12,
+                        width / 12 + below(width / 6), height / 12 + below(height / 4));
+    cv::rectangle(mask, rect, 255, cv::FILLED);
+    blank(hidden, rect, below(256));
+  }
+  return hidden;
+}
+
+cv::Mat blank_of(const cv::Mat& image) {
+  return {image.size(), image.type(), cv::Scalar::all(0.0)};
+}
+
+Query only_the_middle(const Query& query, const Camera&) {
+  const int width = query.image.color.cols, height = query.image.color.rows;
+  const cv::Rect middle(width / 5, height / 5, 3 * width / 5, 3 * height / 5);
+  Query cropped = query;
+  cropped.image.color = blank_of(query.image.color);
+  query.image.color(middle).copyTo(cropped.image.color(middle));
+  if (query.image.depth.empty()) return cropped;
+  cropped.image.depth = blank_of(query.image.depth);
+  query.image.depth(middle).copyTo(cropped.image.depth(middle));
+  return cropped;
+}
+
+// As of a camera turned about its axis.
+Query turned(const Query& query, const Camera& camera, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180.0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  const cv::Matx23d motion(c, -s, camera.cx - c * camera.cx + s * camera.cy,  //
+                           s, c, camera.cy - s * camera.cx - c * camera.cy);
+  Query result = query;
+  result.image.color = blank_of(query.image.color);
+  cv::warpAffine(query.image.color, result.image.color, motion, query.image.color.size());
+  if (!query.image.depth.empty()) {
+    result.image.depth = blank_of(query.image.depth);
+    cv::warpAffine(query.image.depth, result.image.depth, motion, query.image.depth.size(),
+                   cv::INTER_NEAREST);
+  }
+  const SE3 turned_from_camera(so3_exp({0.0, 0.0, angle}), Eigen::Vector3d::Zero());
+  if (query.truth_from_camera) {
+    result.truth_from_camera = *query.truth_from_camera * turned_from_camera.inverse();
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<ImageFactor> image_factors() {
+  std::vector<ImageFactor> factors = {
+      {"as recorded", [](const Query& query, const Camera&) { return query; }},
+      {"low light", in_low_light},
+      {"patches over 30 %", behind_patches},
+      {"middle 36 % alone", only_the_middle}};
+  for (const double degrees : {15.0, 30.0, 45.0}) {
+    factors.push_back({fmt::format("turned by {:.0f}°", degrees),
+                       [degrees](const Query& query, const Camera& camera) {
+                         return turned(query, camera, degrees);
+                       }});
+  }
+  return factors;
+}
+
+}  // namespace dxslam::benchmark

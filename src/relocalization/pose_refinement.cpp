@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "relocalization/pose_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <unordered_map>
+
+#include "matching/guided_matching.h"
+
+namespace dxslam {
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+constexpr double kNearest = 0.05;  // metres; nearer points are not looked for
+
+// The map point of `match` as an observation at `pose`. A depth reading beside an edge is often
+// that of another surface: it counts only where it agrees with the pose so far.
+PoseObservation observe(const Camera& camera, const Map& map, const Frame& frame,
+                        const PointMatch& match, const SE3& camera_from_world,
+                        const PoseOptimizerOptions& options) {
+  const std::size_t i = static_cast<std::size_t>(match.keypoint);
+  PoseObservation o;
+  o.point_in_world = map.point(match.id).position;
+  o.pixel = frame.pixels[i].cast<double>();
+  o.sigma = static_cast<double>(frame.sigmas[i]);
+  if (!frame.has_depth(i)) return o;
+  const double z = (camera_from_world * o.point_in_world).z();
+  const double disparity = camera.bf() / static_cast<double>(frame.depths[i]);
+  const double gate = 3.0 * std::sqrt(options.chi2_depth) * o.sigma;
+  if (z > kNearest && std::abs(camera.bf() / z - disparity) < gate) o.disparity = disparity;
+  return o;
+}
+
+}  // namespace
+
+PoseRefiner::PoseRefiner(const Camera& camera, const DescriptorTraits& traits,
+                         const RelocalizationOptions& options, const Map& map, const Frame& frame)
+    : camera_(camera),
+      traits_(traits),
+      options_(options),
+      map_(map),
+      frame_(frame),
+      grid_(frame.pixels) {}
+
+bool PoseRefiner::refine(RefinedPose& pose) const {
+  if (!optimise(pose)) return false;
+  pose.reference = best_reference(pose.inliers);
+  std::vector<PointId> points = local_points(pose.reference);
+  search(points, options_.wide_radius, pose);
+  if (!optimise(pose)) return false;
+  const KeyframeId better = best_reference(pose.inliers);
+  if (better != pose.reference) points = local_points(better);
+  pose.inliers.clear();
+  search(points, options_.narrow_radius, pose);
+  if (!optimise(pose)) return false;
+  pose.reference = best_reference(pose.inliers);
+  return true;
+}
+
+bool PoseRefiner::optimise(RefinedPose& pose) const {
+  const SE3 camera_from_world = pose.world_from_camera.inverse();
+  std::vector<PoseObservation> observations;
+  observations.reserve(pose.inliers.size());
+  for (const PointMatch& match : pose.inliers) {
+    observations.push_back(observe(camera_, map_, frame_, match, camera_from_world, options_.pose));
+  }
+  const PoseReport report =
+      optimize_pose(camera_, pose.world_from_camera, observations, options_.pose);
+  if (!report.success) return false;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pose.inliers.size(); ++i) {
+    if (report.inlier[i] != 0) pose.inliers[kept++] = pose.inliers[i];
+  }
+  pose.inliers.resize(kept);
+  pose.world_from_camera = report.world_from_camera;
+  pose.rms_pixels = report.rms_pixels;
+  return true;
+}
+
+KeyframeId PoseRefiner::best_reference(const std::vector<PointMatch>& matches) const {
+  std::unordered_map<KeyframeId, int> votes;
+  for (const PointMatch& match : matches) {
+    for (const PointObservation& o : map_.point(match.id).observations) ++votes[o.keyframe];
+  }
+  KeyframeId best = kNoId;
+  int most = 0;
+  for (const auto& [keyframe, count] : votes) {
+    if (count > most || (count == most && keyframe < best)) {
+      best = keyframe;
+      most = count;
+    }
+  }
+  return best;
+}
+
+std::vector<PointId> PoseRefiner::local_points(KeyframeId reference) const {
+  std::vector<PointId> points;
+  const std::size_t most = static_cast<std::size_t>(options_.local_map.max_points);
+  for (const KeyframeId id : local_keyframes(map_, reference, options_.local_map)) {
+    for (const PointId p : map_.keyframe(id).points) {
+      if (p != kNoId) points.push_back(p);
+    }
+    if (points.size() > 4 * most) break;  // most are there a few times
+  }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+bool PoseRefiner::should_see(const MapPoint& point, const SE3& world_from_camera,
+                             const Eigen::Vector3d& in_camera) const {
+  if (in_camera.z() <= kNearest || !camera_.contains(camera_.project(in_camera))) return false;
+  const Eigen::Vector3d ray = world_from_camera.translation() - point.position;
+  const double distance = ray.norm();
+  if (ray.dot(point.normal) < std::cos(options_.max_view_angle * kDegree) * distance) return false;
+  const double ratio = distance / static_cast<double>(point.distance);
+  return ratio <= options_.max_distance_ratio && ratio * options_.max_distance_ratio >= 1.0;
+}
+
+void PoseRefiner::search(const std::vector<PointId>& points, double radius,
+                         RefinedPose& pose) const {
+  std::vector<char> taken(frame_.size(), 0);
+  std::vector<PointId> matched;
+  for (const PointMatch& match : pose.inliers) {
+    taken[static_cast<std::size_t>(match.keypoint)] = 1;
+    matched.push_back(match.id);
+  }
+  std::sort(matched.begin(), matched.end());
+  const SE3 camera_from_world = pose.world_from_camera.inverse();
+  const float window = static_cast<float>(radius * camera_.width / 640.0);
+  std::vector<PixelPrediction> predictions;
+  std::vector<PointId> ids;
+  cv::Mat descriptors(static_cast<int>(points.size()), frame_.descriptors.cols,
+                      frame_.descriptors.type());
+  pose.visible = 0;
+  for (const PointId id : points) {
+    const MapPoint& point = map_.point(id);
+    const Eigen::Vector3d p = camera_from_world * point.position;
+    if (!should_see(point, pose.world_from_camera, p)) continue;
+    ++pose.visible;
+    if (std::binary_search(matched.begin(), matched.end(), id)) continue;
+    const int row = static_cast<int>(ids.size());
+    predictions.push_back(
+        {row, camera_.project(p).cast<float>(), window, static_cast<float>(p.z())});
+    ids.push_back(id);
+    std::memcpy(descriptors.ptr(row), map_.descriptor_of(id).ptr(),
+                descriptors.elemSize() * static_cast<std::size_t>(descriptors.cols));
+  }
+  const GuidedMatchingOptions matching{traits_.max_distance, 0.95F,
+                                       static_cast<float>(options_.depth_tolerance)};
+  for (const Match& m : match_guided(predictions, descriptors, frame_, grid_, taken, matching)) {
+    pose.inliers.push_back({m.b, ids[static_cast<std::size_t>(m.a)]});
+  }
+}
+
+}  // namespace dxslam
