@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "apps/commands.h"
+#include "apps/map_io.h"
 #include "apps/progress.h"
 #include "apps/run_output.h"
 #include "apps/run_settings.h"
@@ -41,6 +42,9 @@ SystemOptions load_system_options(const RunSettings& settings) {
   if (!settings.config.empty()) options = load_options(settings.config, options);
   if (!settings.features.empty()) options.features = settings.features;
   if (options.features == "auto") options.features = default_extractor();
+  if (!settings.mode.empty()) options.mode = settings.mode;
+  if (!settings.vocabulary.empty()) options.vocabulary = settings.vocabulary;
+  if (settings.no_loop_closing) options.close_loops = false;
   options.deterministic = options.deterministic || settings.deterministic;
   options.extractor.deterministic = options.extractor.deterministic || options.deterministic;
   validate_options("", options);
@@ -128,6 +132,24 @@ void print_outcome(const RunSettings& settings, const RunRecord& record,
   if (!settings.out.empty()) fmt::print("results in {}\n", settings.out);
 }
 
+void prepare_map(const RunSettings& settings, const SystemOptions& options, const MapHeader& header,
+                 AutoSaver& saver, System& system) {
+  if (options.mode == "localization" && settings.map_in.empty()) {
+    throw InputError("mode localization has no map, expected --map-in FILE");
+  }
+  if (!settings.map_in.empty()) {
+    load_map_into(system, settings.map_in, header, options.mode == "slam");
+  }
+  if (settings.autosave > 0 && settings.map_out.empty()) {
+    throw InputError("--autosave has nowhere to save to, expected --map-out FILE");
+  }
+  if (settings.autosave > 0) {
+    system.set_autosave(
+        settings.autosave,
+        [&saver](const Map& map, const std::vector<LoopEdge>& loops) { saver.save(map, loops); });
+  }
+}
+
 int run(const RunSettings& settings) {
   const Stopwatch startup;
   catch_signals();
@@ -148,12 +170,19 @@ int run(const RunSettings& settings) {
                   }
                   progress.update(++done, state_name(frame.state));
                 });
+  const MapHeader header = map_header(sequence->camera(), system.extractor());
+  AutoSaver saver(settings.map_out, header);
+  prepare_map(settings, options, header, saver, system);
   RunRecord record;
   record.startup_ms = startup.ms();
   const Stopwatch wall;
   feed(settings, *sequence, system, record);
   record.wall_s = wall.ms() / 1000.0;
   progress.finish();
+  if (!settings.map_out.empty()) {
+    saver.finish();
+    save_system_map(settings.map_out, header, system.map(), system.backend().closed_loops());
+  }
   if (!settings.out.empty()) {
     write_results(settings.out, settings, record, options, *sequence, system);
   }
@@ -180,6 +209,16 @@ void add_run_command(CLI::App& app) {
   command->add_option("--config", settings->config, "YAML file; see `dxslam config dump`");
   command->add_option("--features", settings->features, "Extractor name or model manifest");
   command->add_option("--out", settings->out, "Folder for trajectory, map and summary");
+  command->add_option("--mode", settings->mode, "slam, or localization in the map of --map-in");
+  command->add_option("--map-in", settings->map_in, "Go on with this map");
+  command->add_option("--map-out", settings->map_out, "Save the map here");
+  command
+      ->add_option("--autosave", settings->autosave,
+                   "Save it after every so many keyframes as well, not only at the end")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--vocabulary", settings->vocabulary,
+                      "FBoW or DBoW2 file; none: loops by global descriptor alone");
+  command->add_flag("--no-loop-closing", settings->no_loop_closing, "Do not look for loops");
   command->add_option("--stride", settings->stride, "Use every n-th frame")
       ->check(CLI::PositiveNumber);
   command->add_option("--max-frames", settings->max_frames, "Stop after so many frames");

@@ -72,10 +72,54 @@ Json skipped_frames(const RgbdSequence& sequence) {
 
 Json mapping_table(const System& system) {
   const MappingTotals& m = system.mapping_totals();
-  return {{"keyframes_made", m.keyframes},         {"keyframes_culled", m.culled_keyframes},
-          {"points_from_depth", m.new_points},     {"points_triangulated", m.triangulated_points},
-          {"points_fused", m.fused_points},        {"points_culled", m.culled_points},
+  return {{"keyframes_made", m.keyframes},
+          {"keyframes_culled", m.culled_keyframes},
+          {"points_from_depth", m.new_points},
+          {"points_triangulated", m.triangulated_points},
+          {"points_fused", m.fused_points},
+          {"points_culled", m.culled_points},
+          {"bundle_keyframes", m.bundle_keyframes},
+          {"bundle_observations", m.bundle_observations},
+          {"outlier_observations", m.outlier_observations},
           {"requests_dropped", m.dropped_requests}};
+}
+
+Json components_table(const System& system) {
+  Json all = Json::array();
+  for (const ComponentSummary& c : system.components()) {
+    all.push_back({{"component", c.component},
+                   {"keyframes", c.keyframes},
+                   {"points", c.points},
+                   {"tracked_frames", c.frames}});
+  }
+  return all;
+}
+
+Json loop_table(const System& system) {
+  Json candidates = Json::array();
+  int accepted = 0;
+  int corrections = 0;
+  for (const LoopRecord& r : system.backend().loop_records()) {
+    accepted += r.accepted ? 1 : 0;
+    corrections += r.effect == "bend" || r.effect == "join" ? 1 : 0;
+    candidates.push_back({{"frame", r.frame},
+                          {"query", r.query},
+                          {"candidate", r.candidate},
+                          {"bow_score", rounded(r.bow_score, 1e-4)},
+                          {"global_distance", std::isfinite(r.global_distance)
+                                                  ? Json(rounded(r.global_distance, 1e-4))
+                                                  : Json(nullptr)},
+                          {"accepted", r.accepted},
+                          {"verdict", r.verdict},
+                          {"effect", r.effect},
+                          {"inliers", r.inliers},
+                          {"contradiction_m", rounded(r.contradiction, 1e-4)},
+                          {"largest_move_m", rounded(r.largest_move, 1e-4)}});
+  }
+  return {{"method", system.backend().loop_method()},
+          {"accepted", accepted},
+          {"corrections", corrections},
+          {"candidates", candidates}};
 }
 
 Json summarise(const RunSettings& settings, const RunRecord& record, const SystemOptions& options,
@@ -96,6 +140,9 @@ Json summarise(const RunSettings& settings, const RunRecord& record, const Syste
   summary["keyframes"] = system.map().keyframe_count();
   summary["points"] = system.map().point_count();
   summary["mapping"] = mapping_table(system);
+  summary["components"] = components_table(system);
+  summary["loops"] = loop_table(system);
+  summary["mode"] = options.mode;
   summary["stages"] = stage_table(system);
   summary["startup_ms"] = rounded(record.startup_ms, 1e-3);
   summary["wall_s"] = rounded(record.wall_s, 1e-3);
@@ -147,11 +194,8 @@ void write_map(const std::string& path, const Map& map) {
 }  // namespace
 
 std::size_t tracked_frames(const System& system) {
-  std::size_t tracked = 0;
-  for (const TrackedFrame& f : system.frames()) {
-    if (f.state == TrackingState::kTracking) ++tracked;
-  }
-  return tracked;
+  const auto components = system.components();
+  return components.empty() ? 0 : components.front().frames;
 }
 
 void write_results(const std::string& folder, const RunSettings& settings, const RunRecord& record,
@@ -162,6 +206,11 @@ void write_results(const std::string& folder, const RunSettings& settings, const
   std::filesystem::rename(dir / "trajectory.txt", dir / "trajectory_online.txt");
   write_trajectory(dir / "trajectory.txt", trajectory);
   write_trajectory(dir / "keyframes.txt", system.keyframe_trajectory());
+  for (const ComponentSummary& c : system.components()) {
+    if (c.component == system.components().front().component || c.frames == 0) continue;
+    write_trajectory(dir / fmt::format("trajectory_map{}.txt", c.component),
+                     system.trajectory(c.component));
+  }
   write_map(dir / "map.ply", system.map());
   const Json summary = summarise(settings, record, options, sequence, system);
   write_file_atomically(dir / "summary.json", summary.dump(2) + "\n");

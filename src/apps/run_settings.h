@@ -17,6 +17,12 @@ struct RunSettings {
   std::string config;
   std::string features;
   std::string out;
+  std::string mode;        ///< "": as configured
+  std::string vocabulary;  ///< "": as configured
+  std::string map_in;
+  std::string map_out;
+  int autosave = 0;  ///< keyframes between two saves of map_out; 0: only at the end
+  bool no_loop_closing = false;
   std::size_t stride = 1;
   std::size_t max_frames = 0;  ///< 0: all
   std::optional<double> low_light;

@@ -26,6 +26,7 @@ class BriefExtractor final : public FeatureExtractor {
   const std::string& name() const override { return name_; }
   const DescriptorTraits& traits() const override { return traits_; }
   std::string precision() const override { return detector_->precision(); }
+  std::string model_hash() const override { return detector_->model_hash(); }
   std::vector<StageTime> last_stages() const override {
     auto stages = detector_->last_stages();
     stages.insert(stages.end(), timer_.stages().begin(), timer_.stages().end());

@@ -36,6 +36,9 @@ class FeatureExtractor {
 
   /// What runs the extractor, e.g. "int8" or "f32"; "cpu" where there is no network.
   virtual std::string precision() const { return "cpu"; }
+  /// SHA-256 of the network's weights; empty where there is no network. Descriptors of different
+  /// weights cannot be compared.
+  virtual std::string model_hash() const { return ""; }
   /// Steps of the last extract() in order, e.g. preprocess, network, detect, describe.
   virtual std::vector<StageTime> last_stages() const { return {}; }
 };

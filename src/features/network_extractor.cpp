@@ -66,6 +66,11 @@ class NetworkExtractor final : public FeatureExtractor {
   const std::string& name() const override { return manifest_.name; }
   const DescriptorTraits& traits() const override { return traits_; }
   std::string precision() const override { return engine_.precision(); }
+  std::string model_hash() const override {
+    // Of the float weights: those of other precisions are made from them and give like descriptors.
+    const ModelFile& file = manifest_.files.floating;
+    return file.weights_sha256.empty() ? file.sha256 : file.weights_sha256;
+  }
   std::vector<StageTime> last_stages() const override { return timer_.stages(); }
 
   Features extract(const cv::Mat& image, bool with_global) override {

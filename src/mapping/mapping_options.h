@@ -25,7 +25,7 @@ struct MappingOptions {
   double redundant_share = 0.9;
   int redundant_observers = 3;
   LocalMapOptions local_map;
-  BundleOptions bundle{8, 8};
+  BundleOptions bundle{5, 8, 3e-4};
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

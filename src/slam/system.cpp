@@ -55,6 +55,13 @@ void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
   next_begins_sequence_ = true;
 }
 
+void System::set_autosave(int keyframes, MapCallback save) {
+  require(frames_.empty(), "autosave must be set before the first image");
+  require(keyframes > 0, "autosave needs a positive number of keyframes");
+  autosave_keyframes_ = keyframes;
+  autosave_ = std::move(save);
+}
+
 System::Incoming System::incoming(const RgbdImage& image) {
   require(!finished_, "no image can be processed after finish()");
   if (!mapping() && !map_loaded_) {
@@ -218,6 +225,9 @@ void System::map_keyframe(const KeyframeRequest& request) {
   if (LocalMapPtr moved = backend_.close_loops()) publish(std::move(moved));
   times_.add("loop_closing", loop_watch.ms());
   count(backend_.report());
+  if (autosave_ && totals_.keyframes % autosave_keyframes_ == 0) {
+    autosave_(map(), backend_.closed_loops());
+  }
 }
 
 void System::count(const MappingReport& report) {

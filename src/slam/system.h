@@ -65,6 +65,10 @@ class System {
   /// Goes on with a map made before: the first frames look for their place in it. Before the first
   /// image only. Throws InputError in localization mode without a map (at the first image).
   void load_map(Map map, std::vector<LoopEdge> closed_loops);
+  /// Calls `save` in the mapping thread after every `keyframes` new ones; the map must not be kept
+  /// beyond the call. Before the first image only.
+  using MapCallback = std::function<void(const Map&, const std::vector<LoopEdge>&)>;
+  void set_autosave(int keyframes, MapCallback save);
   /// The next image is of another recording: it may be anywhere in the map.
   void begin_sequence() { next_begins_sequence_ = true; }
 
@@ -146,6 +150,8 @@ class System {
   std::vector<Root> roots_;
   MappingTotals totals_;
   StageTimes times_;
+  MapCallback autosave_;
+  int autosave_keyframes_ = 0;
   bool next_begins_sequence_ = false;
   bool seeking_ = false;  // there is a map, but where in it is not known
   int lost_frames_ = 0;   // in a row

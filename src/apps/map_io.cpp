@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/map_io.h"
+
+#include <chrono>
+
+namespace dxslam::apps {
+namespace {
+
+MapSnapshot snapshot_of(const MapHeader& header, const Map& map,
+                        const std::vector<LoopEdge>& loops) {
+  std::vector<StoredLoopEdge> stored;
+  for (const LoopEdge& edge : loops) {
+    const Map::Anchor a = map.anchor_of(edge.a);
+    const Map::Anchor b = map.anchor_of(edge.b);
+    stored.push_back({a.keyframe, b.keyframe,
+                      map.keyframe(a.keyframe).world_from_camera.inverse() *
+                          map.keyframe(b.keyframe).world_from_camera});
+  }
+  return take_snapshot(header, map, stored);
+}
+
+}  // namespace
+
+MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor) {
+  return {camera, extractor.name(), extractor.model_hash(), extractor.traits()};
+}
+
+void load_map_into(System& system, const std::string& path, const MapHeader& current, bool grows) {
+  StoredMap stored = load_map(path);
+  require_same_features(stored.header, current, path);
+  if (grows) require_same_camera(stored.header, current, path);
+  std::vector<LoopEdge> loops;
+  for (const StoredLoopEdge& edge : stored.loops) loops.push_back({edge.a, edge.b});
+  system.load_map(std::move(stored.map), std::move(loops));
+}
+
+void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
+                     const std::vector<LoopEdge>& loops) {
+  save_map(path, snapshot_of(header, map, loops));
+}
+
+void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops) {
+  if (under_way_.valid()) {
+    if (under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    under_way_.get();
+  }
+  under_way_ = std::async(
+      std::launch::async,
+      [path = path_, snapshot = snapshot_of(header_, map, loops)] { save_map(path, snapshot); });
+}
+
+void AutoSaver::finish() {
+  if (under_way_.valid()) under_way_.get();
+}
+
+}  // namespace dxslam::apps

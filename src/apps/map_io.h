@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <future>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "features/extractor.h"
+#include "loop_closing/essential_graph.h"
+#include "map_files/map_file.h"
+#include "slam/system.h"
+
+namespace dxslam::apps {
+
+/// What a map made now, with this camera and these features, is made with.
+MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor);
+
+/// Reads a map file and hands it to the system. Throws InputError if it is damaged or was made with
+/// other features, or, where the map is to grow, with another camera.
+void load_map_into(System& system, const std::string& path, const MapHeader& current, bool grows);
+
+void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
+                     const std::vector<LoopEdge>& loops);
+
+/// Saves a map in a thread of its own, so that mapping need not wait for the disk. While one save
+/// is under way further ones are left out.
+class AutoSaver {
+ public:
+  AutoSaver(std::string path, MapHeader header) : path_(std::move(path)), header_(header) {}
+  /// Copies the map and returns. Throws what an earlier save threw.
+  void save(const Map& map, const std::vector<LoopEdge>& loops);
+  /// Waits for the save under way.
+  void finish();
+
+ private:
+  std::string path_;
+  MapHeader header_;
+  std::future<void> under_way_;
+};
+
+}  // namespace dxslam::apps
