@@ -26,5 +26,6 @@ void add_config_command(CLI::App& app);
 void add_features_command(CLI::App& app);
 void add_vocab_command(CLI::App& app);
 void add_loops_command(CLI::App& app);
+void add_map_command(CLI::App& app);
 
 }  // namespace dxslam::apps

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   apps::add_features_command(app);
   apps::add_vocab_command(app);
   apps::add_loops_command(app);
+  apps::add_map_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {

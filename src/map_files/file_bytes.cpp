@@ -7,13 +7,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 #include "core/error.h"
+#include "map_files/huge_pages.h"
+#include "map_files/in_parallel.h"
 
 namespace dxslam {
 namespace {
+
+constexpr std::size_t kPiece = std::size_t{2} << 20;  // bytes read at a time
+constexpr std::size_t kPiecesForOneThread = 4;
 
 class OpenFile {
  public:
@@ -31,16 +38,17 @@ class OpenFile {
   int file_;
 };
 
-// How many bytes came; less than `size` where the file ends earlier or cannot be read.
-std::size_t read_all(int file, char* to, std::size_t size) {
-  std::size_t done = 0;
-  while (done < size) {
-    const ssize_t got = ::read(file, to + done, size - done);
+// Whether all of `size` bytes at `offset` could be read.
+bool read_piece(int file, char* to, std::size_t offset, std::size_t size) {
+  while (size > 0) {
+    const ssize_t got = ::pread(file, to, size, static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) break;
-    done += static_cast<std::size_t>(got);
+    if (got <= 0) return false;
+    to += got;
+    offset += static_cast<std::size_t>(got);
+    size -= static_cast<std::size_t>(got);
   }
-  return done;
+  return true;
 }
 
 }  // namespace
@@ -61,10 +69,15 @@ FileBytes::FileBytes(const std::string& path, const std::string& expected, std::
     throw InputError(fmt::format("{}: {} bytes, expected {} of at most {} bytes", path, size_,
                                  expected, max_bytes));
   }
-  bytes_.reset(new char[size_]);
-  if (read_all(file.get(), bytes_.get(), size_) != size_) {
+  bytes_.reset(static_cast<char*>(std::malloc(size_ + 1)));  // never of size 0
+  if (bytes_ == nullptr) throw std::bad_alloc();
+  advise_huge_pages(bytes_.get(), size_);
+  in_parallel((size_ + kPiece - 1) / kPiece, kPiecesForOneThread, [&](std::size_t i) {
+    const std::size_t begin = i * kPiece;
+    if (read_piece(file.get(), bytes_.get() + begin, begin, std::min(kPiece, size_ - begin)))
+      return;
     throw InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
-  }
+  });
 }
 
 }  // namespace dxslam

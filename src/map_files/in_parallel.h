@@ -12,11 +12,10 @@
 
 namespace dxslam {
 
-/// Calls work(i) once for each i below `n`, in no order, on all processors; a few calls are made in
-/// this thread alone. The first exception comes out after all threads have ended.
+/// Calls work(i) once for each i below `n`, in no order, on all processors; up to `few` calls are
+/// made in this thread alone. The first exception comes out after all threads have ended.
 template <class Work>
-void in_parallel(std::size_t n, const Work& work) {
-  constexpr std::size_t kFew = 32;
+void in_parallel(std::size_t n, std::size_t few, const Work& work) {
   constexpr unsigned kMostThreads = 8;
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
@@ -32,7 +31,7 @@ void in_parallel(std::size_t n, const Work& work) {
   };
   std::vector<std::thread> helpers;
   const unsigned processors = std::min(kMostThreads, std::thread::hardware_concurrency());
-  for (unsigned i = 1; n > kFew && i < processors; ++i) helpers.emplace_back(take_turns);
+  for (unsigned i = 1; n > few && i < processors; ++i) helpers.emplace_back(take_turns);
   take_turns();
   for (std::thread& helper : helpers) helper.join();
   if (error) std::rethrow_exception(error);

@@ -9,12 +9,14 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "map_files/huge_pages.h"
 #include "map_files/in_parallel.h"
 #include "map_files/map_sections.h"
 
 namespace dxslam {
 namespace {
 
+constexpr std::size_t kFramesForOneThread = 32;
 constexpr std::size_t kNumbers = 5;  // a keypoint: x, y, depth, score, sigma
 constexpr float kLargest = 1e9F;     // of any of them; fits an int
 
@@ -38,14 +40,18 @@ bool are_plausible(const float* values, std::size_t n) {
   return good;
 }
 
+bool are_plausible(const cv::Mat& descriptors) {
+  return descriptors.type() != CV_32FC1 ||
+         are_plausible(descriptors.ptr<float>(), descriptors.total());
+}
+
+// All of a frame but its descriptors.
 bool are_plausible(const Frame& f) {
   bool positive = true;
   for (std::size_t i = 0; i < f.size(); ++i) positive &= f.depths[i] >= 0.0F && f.sigmas[i] > 0.0F;
-  const bool floats = f.descriptors.type() == CV_32FC1;
   return positive && are_plausible(reinterpret_cast<const float*>(f.pixels.data()), 2 * f.size()) &&
          are_plausible(f.depths.data(), f.size()) && are_plausible(f.scores.data(), f.size()) &&
-         are_plausible(f.sigmas.data(), f.size()) &&
-         (!floats || are_plausible(f.descriptors.ptr<float>(), f.descriptors.total()));
+         are_plausible(f.sigmas.data(), f.size());
 }
 
 template <class Value>
@@ -62,12 +68,35 @@ void fill_frame(const char* from, DescriptorCoding coding, const DescriptorTrait
   copy_out(from, frame.depths, n);
   copy_out(from, frame.scores, n);
   copy_out(from, frame.sigmas, n);
-  frame.descriptors.create(static_cast<int>(n), traits.dimension,
-                           traits.binary ? CV_8UC1 : CV_32FC1);
   const std::size_t size = coded_size(coding, traits.dimension);
   for (int row = 0; row < frame.descriptors.rows; ++row, from += size) {
     decode_descriptor(coding, from, traits.dimension, frame.descriptors.ptr(row));
   }
+}
+
+// Descriptors of many frames share one piece of memory, which is freed when the last frame is.
+constexpr std::size_t kSharedBytes = std::size_t{16} << 20;
+
+// Gives frames from `first` on their places for descriptors; returns the first that got none.
+std::size_t share_descriptors(const std::vector<std::shared_ptr<Frame>>& frames, std::size_t first,
+                              const DescriptorTraits& traits) {
+  const int type = traits.binary ? CV_8UC1 : CV_32FC1;
+  const std::size_t row_bytes =
+      static_cast<std::size_t>(traits.dimension) * (traits.binary ? 1 : sizeof(float));
+  std::size_t rows = frames[first]->size();
+  std::size_t end = first + 1;
+  while (end < frames.size() && (rows + frames[end]->size()) * row_bytes <= kSharedBytes) {
+    rows += frames[end++]->size();
+  }
+  cv::Mat shared(static_cast<int>(rows), traits.dimension, type);
+  advise_huge_pages(shared.data, rows * row_bytes);
+  int row = 0;
+  for (std::size_t i = first; i < end; ++i) {
+    const int n = static_cast<int>(frames[i]->size());
+    frames[i]->descriptors = shared.rowRange(row, row + n);
+    row += n;
+  }
+  return end;
 }
 
 void check_frame(const Frame& frame, const DescriptorTraits& traits) {
@@ -79,7 +108,8 @@ void check_frame(const Frame& frame, const DescriptorTraits& traits) {
       n == 0 || (frame.descriptors.type() == (traits.binary ? CV_8UC1 : CV_32FC1) &&
                  frame.descriptors.cols == traits.dimension && frame.descriptors.isContinuous()),
       "descriptors to be saved must be of the kind that the header says");
-  require(are_plausible(frame), "a frame to be saved holds numbers that are not finite");
+  require(are_plausible(frame) && are_plausible(frame.descriptors),
+          "a frame to be saved holds numbers that are not finite");
 }
 
 }  // namespace
@@ -121,9 +151,12 @@ void read_keypoints(SectionReader reader, const DescriptorTraits& traits,
     records.push_back(reader.take(frame->size(), keypoint_size(coding, traits.dimension)));
   }
   reader.expect_end();
-  in_parallel(frames.size(), [&](std::size_t i) {
+  for (std::size_t i = 0; i < frames.size();) i = share_descriptors(frames, i, traits);
+  in_parallel(frames.size(), kFramesForOneThread, [&](std::size_t i) {
     fill_frame(records[i].data(), coding, traits, *frames[i]);
-    if (!are_plausible(*frames[i])) {
+    // What comes out of bytes is finite whatever they are.
+    const bool floats = coding == DescriptorCoding::kFloat32;
+    if (!are_plausible(*frames[i]) || (floats && !are_plausible(frames[i]->descriptors))) {
       reader.fail(fmt::format("a keypoint of keyframe {} has impossible numbers", i));
     }
   });

@@ -70,7 +70,7 @@ class SectionReader {
 
   template <class Value>
   Value get() {
-    Value value;
+    Value value{};
     get_array(&value, 1);
     return value;
   }
