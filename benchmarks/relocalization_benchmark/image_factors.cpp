@@ -75,10 +75,7 @@ Query turned(const Query& query, const Camera& camera, double degrees) {
     cv::warpAffine(query.image.depth, result.image.depth, motion, query.image.depth.size(),
                    cv::INTER_NEAREST);
   }
-  const SE3 turned_from_camera(so3_exp({0.0, 0.0, angle}), Eigen::Vector3d::Zero());
-  if (query.truth_from_camera) {
-    result.truth_from_camera = *query.truth_from_camera * turned_from_camera.inverse();
-  }
+  result.turned_from_camera = SE3(so3_exp({0.0, 0.0, angle}), Eigen::Vector3d::Zero());
   return result;
 }
 

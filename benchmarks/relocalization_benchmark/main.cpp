@@ -91,7 +91,8 @@ std::vector<Query> queries_of(RgbdSequence& sequence, const Split& split, const 
     if (!split.is_query(i, sequence)) continue;
     const SE3& truth = sequence.ground_truth()[i].world_from_camera;
     if (!sees_map(map, truth)) continue;
-    if (const std::optional<RgbdImage> image = sequence.read(i)) queries.push_back({*image, truth});
+    if (const std::optional<RgbdImage> image = sequence.read(i))
+      queries.push_back({*image, truth, SE3()});
   }
   return queries;
 }
@@ -109,7 +110,7 @@ void ask_elsewhere(const Settings& settings, const Split& split, MapUnderTest& m
     for (std::size_t i = 0; i < sequence->size();
          i += static_cast<std::size_t>(settings.every_foreign)) {
       if (const std::optional<RgbdImage> image = sequence->read(i)) {
-        row.outcomes.push_back(locate(map, relocalizer, {*image, std::nullopt}));
+        row.outcomes.push_back(locate(map, relocalizer, {*image, std::nullopt, SE3()}));
       }
     }
     finish_row(row, settings);
@@ -124,7 +125,7 @@ void ask_elsewhere(const Settings& settings, const Split& split, MapUnderTest& m
   for (const std::string& path : photos) {
     RgbdImage image;
     image.color = read_color_image(path);
-    row.outcomes.push_back(locate(map, relocalizer, {image, std::nullopt}));
+    row.outcomes.push_back(locate(map, relocalizer, {image, std::nullopt, SE3()}));
   }
   finish_row(row, settings);
 }

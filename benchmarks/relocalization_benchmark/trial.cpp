@@ -111,7 +111,7 @@ Outcome locate(MapUnderTest& map, const Map& searched, const GlobalIndex& index,
   outcome.elsewhere = !query.truth_from_camera;
   if (outcome.elsewhere || !outcome.report.has_pose) return outcome;
   const SE3& truth = *query.truth_from_camera;
-  const SE3& pose = outcome.report.world_from_camera;
+  const SE3 pose = outcome.report.world_from_camera * query.turned_from_camera;
   outcome.global = deviation(map.alignment().aligned(pose), truth);
   outcome.with_offset = deviation(map.alignment_with_offset().aligned(pose), truth);
   const Keyframe& reference = searched.keyframe(outcome.report.reference);

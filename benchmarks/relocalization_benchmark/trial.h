@@ -55,7 +55,8 @@ class MapUnderTest {
 /// An image to be located. Without a true pose it is of another place, and no pose is right.
 struct Query {
   RgbdImage image;
-  std::optional<SE3> truth_from_camera;
+  std::optional<SE3> truth_from_camera;  ///< of the camera as it was before it was turned
+  SE3 turned_from_camera;                ///< how far the image was turned afterwards
 };
 
 /// What became of one query.

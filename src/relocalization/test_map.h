@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "map/map.h"
+#include "map/point_scene.h"
+
+namespace dxslam {
+
+/// A global descriptor that turns with `place`: the nearer two places, the more alike.
+inline std::vector<float> global_at(double place) {
+  return {static_cast<float>(std::cos(place)), static_cast<float>(std::sin(place)), 0.0F};
+}
+
+inline FramePtr with_global(const FramePtr& frame, std::vector<float> global) {
+  auto copy = std::make_shared<Frame>(*frame);
+  copy->global = std::move(global);
+  return copy;
+}
+
+/// Adds `count` keyframes along the path of the scene, with its points as map points, as a new
+/// component whose world is moved by `world_from_scene`. Their places start at `place`.
+inline std::vector<KeyframeId> add_scene(PointScene& scene, int count, double place,
+                                         const SE3& world_from_scene, Map& map) {
+  std::vector<KeyframeId> ids;
+  std::unordered_map<int, PointId> point_of;
+  for (int i = 0; i < count; ++i) {
+    const SE3 pose = PointScene::pose(static_cast<double>(i) / count);
+    std::vector<int> source;
+    const FramePtr frame = scene.frame(i, pose, 0.2, 0.8, &source);
+    const KeyframeId id =
+        map.add_keyframe(with_global(frame, global_at(place + 0.02 * i)), world_from_scene * pose,
+                         ids.empty() ? kNoId : ids.back());
+    for (std::size_t k = 0; k < source.size(); ++k) {
+      const auto it = point_of.find(source[k]);
+      if (it != point_of.end()) {
+        map.add_observation(it->second, id, static_cast<std::uint32_t>(k));
+        continue;
+      }
+      const Eigen::Vector3d position =
+          world_from_scene * scene.points()[static_cast<std::size_t>(source[k])];
+      point_of[source[k]] = map.add_point(position, id, static_cast<std::uint32_t>(k));
+    }
+    ids.push_back(id);
+  }
+  for (const auto& entry : point_of) map.refresh_point(entry.second);
+  return ids;
+}
+
+}  // namespace dxslam
