@@ -25,6 +25,7 @@ class CellScores {
  private:
   int cell_;
   std::vector<float> map_;
+  std::vector<float> normalizers_;  // of a row of cells
 };
 
 }  // namespace dxslam

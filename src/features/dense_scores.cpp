@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include "core/error.h"
 
@@ -32,31 +33,32 @@ DXSLAM_INLINE_KERNEL void mark_peaks(const float* row, std::ptrdiff_t stride, in
   }
 }
 
-using MarkPeaks = void (*)(const float*, std::ptrdiff_t, int, float, std::uint8_t*);
+constexpr int kLanes = 8;
+using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
+using Flags = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-void mark_peaks_generic(const float* row, std::ptrdiff_t stride, int width, float threshold,
-                        std::uint8_t* marks) {
-  mark_peaks(row, stride, width, threshold, marks);
-}
-
-#ifdef DXSLAM_HAS_X86_SIMD
-DXSLAM_TARGET_AVX2 void mark_peaks_avx2(const float* row, std::ptrdiff_t stride, int width,
-                                        float threshold, std::uint8_t* marks) {
-  mark_peaks(row, stride, width, threshold, marks);
-}
-DXSLAM_TARGET_AVX512 void mark_peaks_avx512(const float* row, std::ptrdiff_t stride, int width,
-                                            float threshold, std::uint8_t* marks) {
-  mark_peaks(row, stride, width, threshold, marks);
-}
-#endif
-
-MarkPeaks choose_mark_peaks(SimdLevel level) {
-#ifdef DXSLAM_HAS_X86_SIMD
-  if (level == SimdLevel::kAvx512) return mark_peaks_avx512;
-  if (level == SimdLevel::kAvx2) return mark_peaks_avx2;
-#endif
-  (void)level;
-  return mark_peaks_generic;
+/// Whether a square of up to 7 x 7 pixels holds a better score than its centre, all of it at once:
+/// it has no branch that the processor would guess wrongly. Eight columns from the
+/// left edge of the square on must exist, and all its rows.
+DXSLAM_INLINE_KERNEL bool square_beats(const float* centre, std::ptrdiff_t stride, int radius) {
+  const float score = *centre;
+  const float* left = centre - radius;
+  Flags column = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Floats none = Floats{} - std::numeric_limits<float>::max();
+  Floats row;
+  std::memcpy(&row, left, sizeof(row));
+  Floats earlier = column < radius ? row : none;  // these win ties
+  Floats later = column > radius ? row : none;
+  for (int d = 1; d <= radius; ++d) {
+    std::memcpy(&row, left - d * stride, sizeof(row));
+    earlier = earlier > row ? earlier : row;
+    std::memcpy(&row, left + d * stride, sizeof(row));
+    later = later > row ? later : row;
+  }
+  const Flags beaten = ((earlier >= score) | (later > score)) & (column <= 2 * radius);
+  std::uint64_t words[4];
+  std::memcpy(words, &beaten, sizeof(words));
+  return ((words[0] | words[1]) | (words[2] | words[3])) != 0;
 }
 
 /// Position of the next mark from `from` on, or the size.
@@ -67,21 +69,88 @@ int next_mark(const std::vector<std::uint8_t>& marks, int from) {
   return static_cast<int>(static_cast<const std::uint8_t*>(found) - marks.data());
 }
 
+/// Whether a row of the square holds a better score; `rivals_win_ties` where they come first in
+/// `better`.
+bool row_beats(const float* row, int begin, int end, float score, bool rivals_win_ties) {
+  bool beaten = false;
+  if (rivals_win_ties) {
+    for (int u = begin; u < end; ++u) beaten |= row[u] >= score;
+  } else {
+    for (int u = begin; u < end; ++u) beaten |= row[u] > score;
+  }
+  return beaten;
+}
+
 /// Whether the pixel is the best of its square, as far as that lies in the map; ties as in
-/// `better`: rows above and pixels on the left win them.
+/// `better`: rows above and pixels on the left win them. Near rows come first, as what beats a
+/// pixel is mostly near.
 bool is_maximum(const TensorView& scores, int radius, int x, int y) {
   const float score = *scores.at(y, x);
-  const int x_begin = std::max(0, x - radius);
-  const int x_end = std::min(scores.width, x + radius + 1);
-  for (int v = std::max(0, y - radius); v < std::min(scores.height, y + radius + 1); ++v) {
-    const float* row = scores.at(v, 0);
-    bool beaten = false;
-    for (int u = x_begin; u < x; ++u) beaten |= v <= y ? row[u] >= score : row[u] > score;
-    if (v != y) beaten |= v < y ? row[x] >= score : row[x] > score;
-    for (int u = x + 1; u < x_end; ++u) beaten |= v < y ? row[u] >= score : row[u] > score;
-    if (beaten) return false;
+  const int begin = std::max(0, x - radius);
+  const int end = std::min(scores.width, x + radius + 1);
+  const float* own = scores.at(y, 0);
+  if (row_beats(own, begin, x, score, true) || row_beats(own, x + 1, end, score, false)) {
+    return false;
+  }
+  for (int d = 1; d <= radius; ++d) {
+    if (y >= d && row_beats(scores.at(y - d, 0), begin, end, score, true)) return false;
+    if (y + d < scores.height && row_beats(scores.at(y + d, 0), begin, end, score, false)) {
+      return false;
+    }
   }
   return true;
+}
+
+/// Appends the maxima of a row. `marks` has a byte for each pixel of the area's rows.
+DXSLAM_INLINE_KERNEL void find_in_row(const TensorView& scores, float threshold,
+                                      const PixelArea& area, int radius, int y,
+                                      std::vector<std::uint8_t>& marks,
+                                      std::vector<Candidate>& candidates) {
+  const float* row = scores.at(y, area.x_begin);
+  const int width = static_cast<int>(marks.size());
+  mark_peaks(row, scores.row_stride, width, threshold, marks.data());
+  const bool rows_exist = y >= radius && y + radius < scores.height;
+  for (int i = next_mark(marks, 0); i < width; i = next_mark(marks, i + 1)) {
+    const int x = area.x_begin + i;
+    const bool at_once =
+        rows_exist && 2 * radius < kLanes && x >= radius && x - radius + kLanes <= scores.width;
+    const bool best = at_once ? !square_beats(row + i, scores.row_stride, radius)
+                              : is_maximum(scores, radius, x, y);
+    if (best) candidates.push_back({x, y, row[i]});
+  }
+}
+
+using FindInRow = void (*)(const TensorView&, float, const PixelArea&, int, int,
+                           std::vector<std::uint8_t>&, std::vector<Candidate>&);
+
+void find_in_row_generic(const TensorView& scores, float threshold, const PixelArea& area,
+                         int radius, int y, std::vector<std::uint8_t>& marks,
+                         std::vector<Candidate>& candidates) {
+  find_in_row(scores, threshold, area, radius, y, marks, candidates);
+}
+
+#ifdef DXSLAM_HAS_X86_SIMD
+DXSLAM_TARGET_AVX2 void find_in_row_avx2(const TensorView& scores, float threshold,
+                                         const PixelArea& area, int radius, int y,
+                                         std::vector<std::uint8_t>& marks,
+                                         std::vector<Candidate>& candidates) {
+  find_in_row(scores, threshold, area, radius, y, marks, candidates);
+}
+DXSLAM_TARGET_AVX512 void find_in_row_avx512(const TensorView& scores, float threshold,
+                                             const PixelArea& area, int radius, int y,
+                                             std::vector<std::uint8_t>& marks,
+                                             std::vector<Candidate>& candidates) {
+  find_in_row(scores, threshold, area, radius, y, marks, candidates);
+}
+#endif
+
+FindInRow choose_find_in_row(SimdLevel level) {
+#ifdef DXSLAM_HAS_X86_SIMD
+  if (level == SimdLevel::kAvx512) return find_in_row_avx512;
+  if (level == SimdLevel::kAvx2) return find_in_row_avx2;
+#endif
+  (void)level;
+  return find_in_row_generic;
 }
 
 }  // namespace
@@ -106,16 +175,10 @@ void find_maxima(const TensorView& scores, float threshold, const PixelArea& are
   require(area.x_begin > 0 && area.y_begin > 0 && area.x_end < scores.width &&
               area.y_end < scores.height,
           "find_maxima wants an area off the rim of the map");
-  const MarkPeaks mark = choose_mark_peaks(level);
-  const int width = std::max(0, area.x_end - area.x_begin);
-  std::vector<std::uint8_t> marks(static_cast<std::size_t>(width));
+  const FindInRow find = choose_find_in_row(level);
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(std::max(0, area.x_end - area.x_begin)));
   for (int y = area.y_begin; y < area.y_end; ++y) {
-    const float* row = scores.at(y, area.x_begin);
-    mark(row, scores.row_stride, width, threshold, marks.data());
-    for (int i = next_mark(marks, 0); i < width; i = next_mark(marks, i + 1)) {
-      const int x = area.x_begin + i;
-      if (is_maximum(scores, radius, x, y)) candidates.push_back({x, y, row[i]});
-    }
+    find(scores, threshold, area, radius, y, marks, candidates);
   }
 }
 

@@ -10,6 +10,11 @@
 namespace dxslam {
 namespace {
 
+/// A type of its own, which the algorithms inline; a pointer to the function they do not.
+struct Better {
+  bool operator()(const Candidate& a, const Candidate& b) const { return better(a, b); }
+};
+
 /// A grid over the image and how many candidates each cell may take.
 struct Quotas {
   int cell;
@@ -47,7 +52,7 @@ std::size_t take_quotas(const Quotas& plan, std::vector<Candidate>& candidates) 
     const auto first = by_cell.begin() + static_cast<std::ptrdiff_t>(begin[i]);
     const auto last = by_cell.begin() + static_cast<std::ptrdiff_t>(begin[i + 1]);
     const auto middle = first + std::min(static_cast<std::ptrdiff_t>(plan.quota), last - first);
-    if (middle != last) std::nth_element(first, middle, last, better);
+    if (middle != last) std::nth_element(first, middle, last, Better());
     for (auto it = first; it != middle; ++it) candidates[chosen++] = *it;
     for (auto it = middle; it != last; ++it) candidates[--left_over] = *it;
   }
@@ -67,10 +72,10 @@ void select_keypoints(int width, int height, int count, double spread, int cell,
         share == 0 ? 0 : take_quotas(plan_quotas(width, height, share, cell), candidates);
     const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(fixed);
     const auto middle = candidates.begin() + count;
-    std::nth_element(first, middle, candidates.end(), better);
+    std::nth_element(first, middle, candidates.end(), Better());
     candidates.resize(wanted);
   }
-  std::sort(candidates.begin(), candidates.end(), better);
+  std::sort(candidates.begin(), candidates.end(), Better());
 }
 
 }  // namespace dxslam

@@ -98,6 +98,19 @@ TEST(ModelManifest, ReadsEveryPart) {
   EXPECT_EQ(manifest.descriptor.dimension, 64);
 }
 
+TEST(ModelManifest, ReadsUnshuffledInput) {
+  std::string text = replaced("scale: 0.5\n  mean: [1, 2, 3]\n  std: [4, 5, 6]\n",
+                              "normalization: instance\n  unshuffle: 4\n"
+                              "  deviation_floor: 0.25\n  quantization_step: 0.05\n");
+  text.replace(text.find("channels: 3"), 11, "channels: 1");
+  const ManifestFile file(text);
+  const InputDescription input = read_model_manifest(file.path()).input;
+  EXPECT_TRUE(input.instance_normalized);
+  EXPECT_EQ(input.blocks(), 16);
+  EXPECT_DOUBLE_EQ(input.deviation_floor, 0.25);
+  EXPECT_DOUBLE_EQ(input.quantization_step, 0.05);
+}
+
 TEST(ModelManifest, NamesFileLineAndFaultOfWhatItRefuses) {
   struct Case {
     const char* from;
@@ -111,6 +124,8 @@ TEST(ModelManifest, NamesFileLineAndFaultOfWhatItRefuses) {
       {"channels: 3", "channels: three", "'three', expected a whole number"},
       {"mean: [1, 2, 3]", "mean: [1, 2]", "`mean` has 2 numbers, expected 3"},
       {"std: [4, 5, 6]", "std: [4, 0, 6]", "`std` has 0, expected above 0"},
+      {"scale: 0.5", "unshuffle: 4", "expected one channel and `normalization: instance`"},
+      {"scale: 0.5", "quantization_step: 0.1", "expected `unshuffle` with it"},
       {"  nms_radius: 3", "  nms_radios: 3", "did you mean 'detector.nms_radius'"},
       {"nms_radius: 3", "nms_radius: 300", "from 0 to 64 pixels"},
       {"layout: nhwc", "layout: hwc", "expected nchw or nhwc"},

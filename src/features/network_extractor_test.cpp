@@ -12,6 +12,7 @@
 #include <fstream>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
+#include <thread>
 
 #include "core/error.h"
 #include "features/test_models.h"
@@ -188,8 +189,56 @@ TEST(NetworkExtractor, RunsASeparateGlobalHeadOnlyWhenAsked) {
   EXPECT_EQ(extractor->extract(image, true).global, both.global);
   EXPECT_TRUE(extractor->extract(image, false).global.empty());
 
+  EXPECT_TRUE(local.encoder.empty());
+  extractor->keep_encoder(true);
+  const Features kept = extractor->extract(image, false);
+  EXPECT_TRUE(kept.global.empty());
+  ASSERT_FALSE(kept.encoder.empty());
+  std::vector<float> later;
+  std::thread elsewhere([&] { later = extractor->global_of(kept.encoder); });
+  extractor->extract(test_image(96, 64, 9), true);
+  elsewhere.join();
+  EXPECT_EQ(later, both.global);
+  EXPECT_THROW(extractor->global_of(cv::Mat(3, 3, CV_8U)), ContractError);
+
   manifest.global_dimension = 256;
   EXPECT_THAT(refusal(manifest), HasSubstr("expected 256 values"));
+}
+
+TEST(NetworkExtractor, TakesNormalizedBlocksAsFloatsOrIntegers) {
+  const TemporaryFolder folder("blocks");
+  save(testing_support::blocks_network(32, false), folder.file("float.xml"));
+  save(testing_support::blocks_network(32, true), folder.file("integer.xml"));
+  ModelManifest manifest = superpoint_manifest(folder);
+  manifest.input.name = "blocks";
+  manifest.input.scale = 1.0;
+  manifest.input.instance_normalized = true;
+  manifest.input.deviation_floor = 0.25;
+  manifest.input.unshuffle = 4;
+  manifest.input.quantization_step = testing_support::kBlocksStep;
+  manifest.descriptor.dimension = 32;
+  manifest.files.floating.path = folder.file("float.xml");
+  const cv::Mat image = test_image(100, 70, 21);
+  const auto extractor = make_network_extractor(manifest, exact_options());
+  const Features found = extractor->extract(image, false);
+  EXPECT_GT(found.size(), 20U);
+  expect_sound(found, image.size(), 32);
+  // Brightness and contrast drop out.
+  cv::Mat other;
+  image.convertTo(other, -1, 0.5, 0.0);
+  const Features darker = extractor->extract(other, false);
+  EXPECT_NEAR(static_cast<double>(darker.size()), static_cast<double>(found.size()), 5.0);
+  EXPECT_GT(found.descriptors.row(0).dot(darker.descriptors.row(0)), 0.99);
+
+  manifest.files.floating.path = folder.file("integer.xml");
+  const Features rounded = make_network_extractor(manifest, exact_options())->extract(image, false);
+  EXPECT_NEAR(static_cast<double>(rounded.size()), static_cast<double>(found.size()), 5.0);
+  EXPECT_GT(found.descriptors.row(0).dot(rounded.descriptors.row(0)), 0.99);
+
+  manifest.input.quantization_step = 0.0;
+  EXPECT_THAT(refusal(manifest), HasSubstr("is of type i8, expected f32"));
+  manifest.input.unshuffle = 2;
+  EXPECT_THAT(refusal(manifest), HasSubstr("expected [1,4,H,W]"));
 }
 
 TEST(NetworkExtractor, RunsTheOfficialHfNetInterface) {
@@ -208,6 +257,10 @@ TEST(NetworkExtractor, RunsTheOfficialHfNetInterface) {
   ASSERT_EQ(both.global.size(), 4096U);
   EXPECT_NEAR(cv::norm(both.global), 1.0, 1e-5);
   EXPECT_EQ(cv::norm(both.descriptors, local.descriptors, cv::NORM_INF), 0.0);
+  extractor->keep_encoder(true);
+  const std::vector<float> later = extractor->global_of(extractor->extract(image, false).encoder);
+  ASSERT_EQ(later.size(), 4096U);
+  EXPECT_NEAR(cv::norm(cv::Mat(later), cv::Mat(both.global)), 0.0, 1e-5);
 }
 
 TEST(NetworkExtractor, CutsATensorFlowGraphBeforeWhatCannotBeConverted) {

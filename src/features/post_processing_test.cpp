@@ -49,30 +49,38 @@ double reference_log_probability(const TensorView& logits, int row, int column, 
   return logits.value(channel, row, column) - peak - std::log(sum);
 }
 
+void expect_softmax(int cell, float low, float high, Random& random) {
+  const int channels = cell * cell + 1;
+  const int rows = 7;
+  const int columns = 9;
+  const auto values = random_values(
+      random, static_cast<std::size_t>(rows) * columns * static_cast<std::size_t>(channels), low,
+      high);
+  const auto logits = TensorView::nhwc(values.data(), channels, rows, columns);
+  const double resolution = 1e-7 * std::max(std::abs(low), std::abs(high));  // of the logits
+  for (const SimdLevel level : levels()) {
+    CellScores scores(cell);
+    const TensorView map = scores.log_probabilities(logits, level);
+    ASSERT_EQ(map.width, columns * cell);
+    ASSERT_EQ(map.height, rows * cell);
+    for (int y = 0; y < rows * cell; ++y) {
+      for (int x = 0; x < columns * cell; ++x) {
+        const double truth =
+            reference_log_probability(logits, y / cell, x / cell, (y % cell) * cell + x % cell);
+        EXPECT_NEAR(*map.at(y, x), truth, 5e-6 + 1e-6 * std::abs(truth) + resolution)
+            << "cell " << cell << " at " << x << " " << y;
+      }
+    }
+  }
+}
+
 TEST(CellScores, EqualASoftmaxOverEachCell) {
   Random random(1);
   for (const int cell : {8, 4, 5}) {
-    const int channels = cell * cell + 1;
-    const int rows = 7;
-    const int columns = 9;
-    const auto values = random_values(
-        random, static_cast<std::size_t>(rows) * columns * static_cast<std::size_t>(channels),
-        -60.0F, 40.0F);
-    const auto logits = TensorView::nhwc(values.data(), channels, rows, columns);
-    for (const SimdLevel level : levels()) {
-      CellScores scores(cell);
-      const TensorView map = scores.log_probabilities(logits, level);
-      ASSERT_EQ(map.width, columns * cell);
-      ASSERT_EQ(map.height, rows * cell);
-      for (int y = 0; y < rows * cell; ++y) {
-        for (int x = 0; x < columns * cell; ++x) {
-          const double truth =
-              reference_log_probability(logits, y / cell, x / cell, (y % cell) * cell + x % cell);
-          EXPECT_NEAR(*map.at(y, x), truth, 5e-6 + 1e-6 * std::abs(truth))
-              << "cell " << cell << " at " << x << " " << y;
-        }
-      }
-    }
+    expect_softmax(cell, -60.0F, 40.0F, random);
+    expect_softmax(cell, -12.0F, 8.0F, random);
+    expect_softmax(cell, -300.0F, 200.0F, random);   // beyond what exponentials hold
+    expect_softmax(cell, -200.0F, -100.0F, random);  // below
   }
 }
 
@@ -348,7 +356,7 @@ TEST(DenseScores, MaximaEqualSuppressionOfAllCandidates) {
     for (float& v : values) v = std::round(v * steps) / steps;
     const auto map = TensorView::nchw(values.data(), 1, height, width);
     const PixelArea area{1, 3, 45, 39};
-    for (const int radius : {1, 2, 4}) {
+    for (const int radius : {1, 2, 3, 4}) {
       NonMaximumSuppression suppression;
       std::vector<Candidate> all;
       find_candidates(map, 0.3F, all);

@@ -28,6 +28,11 @@ class TemporaryFolder {
 /// image [1,1,H,W] -> semi [1,65,H/8,W/8], desc [1,dimension,H/8,W/8]; with `features` also that,
 /// [1,16,H/8,W/8].
 std::shared_ptr<ov::Model> superpoint_like(int dimension, bool with_features = false);
+/// What one unit of the integers of blocks_network() stands for.
+constexpr double kBlocksStep = 0.05;
+/// blocks [1,16,H/4,W/4], as floats or as 8-bit integers -> semi [1,65,H/8,W/8], desc
+/// [1,dimension,H/8,W/8].
+std::shared_ptr<ov::Model> blocks_network(int dimension, bool integer_input);
 /// features [1,16,h,w] -> global_descriptor [1,dimension].
 std::shared_ptr<ov::Model> global_head(int dimension);
 /// image [1,H,W,1] -> scores_dense [1,H,W], local_descriptor_map [1,H/8,W/8,256] of unit length,

@@ -89,6 +89,23 @@ std::shared_ptr<ov::Model> superpoint_like(int dimension, bool with_features) {
   return std::make_shared<ov::Model>(results, ov::ParameterVector{image}, "superpoint_like");
 }
 
+std::shared_ptr<ov::Model> blocks_network(int dimension, bool integer_input) {
+  const auto blocks = std::make_shared<op::Parameter>(
+      integer_input ? ov::element::i8 : ov::element::f32, ov::PartialShape{1, 16, -1, -1});
+  blocks->set_friendly_name("blocks");
+  blocks->output(0).set_names({"blocks"});
+  Node values = blocks;
+  if (integer_input) {
+    values = std::make_shared<op::Convert>(values, ov::element::f32);
+    values = std::make_shared<op::Multiply>(values, scalar(static_cast<float>(kBlocksStep)));
+  }
+  const auto logits = patches(values, 16, 65, 2, 12);
+  const auto descriptors = patches(values, 16, static_cast<std::size_t>(dimension), 2, 13);
+  return std::make_shared<ov::Model>(
+      ov::ResultVector{result(logits, "semi"), result(descriptors, "desc")},
+      ov::ParameterVector{blocks}, "blocks_network");
+}
+
 std::shared_ptr<ov::Model> global_head(int dimension) {
   const auto features = parameter({1, 16, -1, -1}, "features");
   const auto pooled = std::make_shared<op::ReduceMean>(features, integers({2, 3}), false);
