@@ -177,29 +177,32 @@ class Experiment {
   LoopExperiment result_;
 };
 
-LoopTruth truth_from_poses(const LoopSettings& settings, const RgbdSequence& sequence) {
-  const Trajectory& truth = sequence.ground_truth();
-  if (truth.empty()) {
-    throw InputError(fmt::format(
-        "{}: the recording has no poses, expected --ground-truth with a file", settings.sequence));
+/// The pose of a moment; nothing if none is near enough in time.
+const StampedPose* pose_at(const Trajectory& truth, double stamp) {
+  if (truth.empty()) return nullptr;
+  auto nearest =
+      std::lower_bound(truth.begin(), truth.end(), stamp,
+                       [](const StampedPose& pose, double value) { return pose.stamp < value; });
+  if (nearest == truth.end() ||
+      (nearest != truth.begin() && stamp - std::prev(nearest)->stamp < nearest->stamp - stamp)) {
+    --nearest;
   }
+  return std::abs(nearest->stamp - stamp) <= kPoseTolerance ? &*nearest : nullptr;
+}
+
+LoopTruth truth_from_poses(const LoopSettings& settings, const RgbdSequence& sequence,
+                           const std::vector<std::optional<DepthView>>& views) {
   Trajectory poses;
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < sequence.size(); ++i) {
-    const double stamp = sequence.stamp(i);
-    const auto after =
-        std::lower_bound(truth.begin(), truth.end(), stamp,
-                         [](const StampedPose& pose, double value) { return pose.stamp < value; });
-    auto nearest = after == truth.end() ? std::prev(after) : after;
-    if (after != truth.begin() && after != truth.end() &&
-        stamp - std::prev(after)->stamp < after->stamp - stamp) {
-      nearest = std::prev(after);
-    }
-    if (std::abs(nearest->stamp - stamp) > kPoseTolerance) continue;
-    poses.push_back({stamp, nearest->world_from_camera});
+    const StampedPose* pose = pose_at(sequence.ground_truth(), sequence.stamp(i));
+    if (pose == nullptr) continue;
+    poses.push_back({sequence.stamp(i), pose->world_from_camera});
     frames.push_back(i);
   }
-  return loop_truth_from_poses(poses, frames, sequence.size(), settings.poses);
+  LoopTruth truth = loop_truth_from_poses(poses, frames, sequence.size(), settings.poses);
+  mark_overlapping_views(views, settings.poses, truth);
+  return truth;
 }
 
 // Frames 2k and 2k + 1 are the two views of place k; these two of each other say nothing.
@@ -221,6 +224,7 @@ LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& s
   Experiment experiment(settings);
   const LowLight low_light(settings.low_light_gain > 0.0 ? settings.low_light_gain
                                                          : LowLight::kDefaultGain);
+  std::vector<std::optional<DepthView>> views(sequence.size());
   std::size_t total = (sequence.size() + settings.stride - 1) / settings.stride;
   if (settings.max_frames > 0) total = std::min(total, settings.max_frames);
   for (std::size_t k = 0; k < total; ++k) {
@@ -231,15 +235,22 @@ LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& s
     if (settings.low_light_from && i >= *settings.low_light_from) {
       image->color = low_light.apply(image->color, image->index);
     }
+    const StampedPose* pose = pose_at(sequence.ground_truth(), sequence.stamp(i));
+    if (pose != nullptr && !image->depth.empty()) {
+      views[i].emplace(image->depth, sequence.camera(), pose->world_from_camera);
+    }
     const double latest = sequence.stamp(i) - settings.poses.window;
     experiment.process(image->color, static_cast<std::uint32_t>(i),
                        [&](std::uint32_t place) { return sequence.stamp(place) > latest; });
   }
-  return experiment.take_result();
+  LoopExperiment result = experiment.take_result();
+  result.views = std::move(views);
+  return result;
 }
 
-LoopTruth load_loop_truth(const LoopSettings& settings, const RgbdSequence& sequence) {
-  if (settings.truth == "poses") return truth_from_poses(settings, sequence);
+LoopTruth load_loop_truth(const LoopSettings& settings, const RgbdSequence& sequence,
+                          const std::vector<std::optional<DepthView>>& views) {
+  if (settings.truth == "poses") return truth_from_poses(settings, sequence, views);
   LoopTruth truth = read_loop_truth(settings.truth);
   const std::size_t frames = sequence.size();
   if (truth.frames() == frames) return truth;

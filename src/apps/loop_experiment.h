@@ -56,6 +56,8 @@ struct LoopExperiment {
   std::string hf_name;               ///< of the extractor; empty where no method needs it
   std::vector<double> hf_ms;         ///< extraction, by image
   std::vector<double> orb_ms;
+  /// By frame of the recording; nothing without depth or pose, or where the image was not used.
+  std::vector<std::optional<DepthView>> views;
 };
 
 /// Asks every detector for every image, then makes the image a place. Views less than
@@ -64,9 +66,10 @@ struct LoopExperiment {
 LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& sequence,
                                    const std::function<void(std::size_t, std::size_t)>& progress);
 
-/// The true loops between the frames of the recording, from its poses or the file. A matrix of
-/// twice as many frames is one of left and right in turn, one of half as many has one frame a
-/// place. Throws InputError if it does not fit.
-LoopTruth load_loop_truth(const LoopSettings& settings, const RgbdSequence& sequence);
+/// The true loops between the frames of the recording, from its poses (and `views` of the
+/// experiment) or the file. A matrix of twice as many frames is one of left and right in turn, one
+/// of half as many has one frame a place. Throws InputError if it does not fit.
+LoopTruth load_loop_truth(const LoopSettings& settings, const RgbdSequence& sequence,
+                          const std::vector<std::optional<DepthView>>& views);
 
 }  // namespace dxslam::apps

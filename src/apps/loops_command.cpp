@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "apps/commands.h"
 #include "apps/loop_experiment.h"
@@ -49,7 +50,12 @@ void find_loops(const LoopsArguments& arguments) {
   reader.eye = settings.eye;
   reader.needs_calibration = false;
   const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, reader);
-  const LoopTruth truth = load_loop_truth(settings, *sequence);
+  if (settings.truth == "poses" && sequence->ground_truth().empty()) {
+    throw InputError(fmt::format(
+        "{}: the recording has no poses, expected --ground-truth with a file", settings.sequence));
+  }
+  std::optional<LoopTruth> truth;  // a file is read at once, so that mistakes show at once
+  if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
   Progress progress("images", sequence->size());
   const LoopExperiment experiment = run_loop_experiment(
       settings, *sequence,
@@ -59,9 +65,10 @@ void find_loops(const LoopsArguments& arguments) {
     throw InputError(fmt::format("{}: no image to ask for, expected some{}", settings.sequence,
                                  settings.second_pass_from ? " in the second pass" : ""));
   }
-  const std::vector<NamedCurve> curves = judge_methods(experiment, truth);
+  if (!truth) truth = load_loop_truth(settings, *sequence, experiment.views);
+  const std::vector<NamedCurve> curves = judge_methods(experiment, *truth);
   if (!settings.out.empty()) {
-    write_loop_results(settings, experiment, truth, curves, sequence->name());
+    write_loop_results(settings, experiment, *truth, curves, sequence->name());
   }
   print_table(experiment, curves);
   if (!sequence->skipped().empty()) {
@@ -98,6 +105,10 @@ void add_input_options(CLI::App& command, LoopSettings& settings) {
   command
       .add_option("--unclear", poses.unclear,
                   "Pairs within so many times radius and angle are neither right nor wrong")
+      ->capture_default_str();
+  command
+      .add_option("--overlap", poses.overlap,
+                  "Pairs that share this much of what they see are not wrong (with depth)")
       ->capture_default_str();
   command.add_option("--second-pass-from", settings.second_pass_from,
                      "Frames before it are places only, frames from it on queries only");

@@ -100,6 +100,7 @@ Json summary_of(const LoopSettings& settings, const LoopExperiment& experiment,
     summary["radius_m"] = settings.poses.radius;
     summary["angle_deg"] = settings.poses.angle;
     summary["unclear_factor"] = settings.poses.unclear;
+    summary["unclear_overlap"] = settings.poses.overlap;
   }
   summary["window_s"] = settings.poses.window;
   if (settings.low_light_from) summary["low_light_from"] = *settings.low_light_from;

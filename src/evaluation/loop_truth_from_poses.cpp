@@ -40,4 +40,18 @@ LoopTruth loop_truth_from_poses(const Trajectory& poses, const std::vector<std::
   return truth;
 }
 
+void mark_overlapping_views(const std::vector<std::optional<DepthView>>& views,
+                            const PoseLoopOptions& options, LoopTruth& truth) {
+  require(views.size() == truth.frames(), "one view for each frame");
+  if (options.overlap >= 1.0) return;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!views[i] || !views[j] || truth.at(i, j) != PairTruth::kDifferent) continue;
+      if (views_overlap(*views[i], *views[j], options.overlap)) {
+        truth.set(i, j, PairTruth::kUnclear);
+      }
+    }
+  }
+}
+
 }  // namespace dxslam

@@ -2,8 +2,12 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "core/options.h"
 #include "core/trajectory.h"
+#include "evaluation/view_overlap.h"
 #include "io/loop_truth.h"
 
 namespace dxslam {
@@ -14,6 +18,7 @@ struct PoseLoopOptions {
   double angle = 30.0;
   double window = 3.0;
   double unclear = 2.0;
+  double overlap = 0.1;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -23,6 +28,9 @@ struct PoseLoopOptions {
     visit("unclear", self.unclear, {1, 100}, "",
           "pairs within so many times radius and angle that are no loop count neither as right nor "
           "as wrong; 1 = none");
+    visit("overlap", self.overlap, {0.001, 1}, "",
+          "pairs that are no loop but see so much of the same surface count neither as right nor "
+          "as wrong (with depth only); 1 = none");
   }
 };
 
@@ -31,5 +39,11 @@ struct PoseLoopOptions {
 /// closer in time than the window are different; pairs with a frame that has no pose are unclear.
 LoopTruth loop_truth_from_poses(const Trajectory& poses, const std::vector<std::size_t>& frames,
                                 std::size_t frame_count, const PoseLoopOptions& options);
+
+/// Makes pairs unclear that are different but see the same surface, as from opposite sides of a
+/// table: to match them is no mistake. `views[i]` is what frame i saw, nothing where it has no
+/// depth or pose.
+void mark_overlapping_views(const std::vector<std::optional<DepthView>>& views,
+                            const PoseLoopOptions& options, LoopTruth& truth);
 
 }  // namespace dxslam
