@@ -143,7 +143,10 @@ BundleMerge merge_bundle(const LocalBundle& bundle, const BundleReport& report, 
 BackgroundBundle::BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line)
     : camera_(camera), options_(options), in_line_(in_line) {}
 
-BackgroundBundle::~BackgroundBundle() { cancel(); }
+BackgroundBundle::~BackgroundBundle() {
+  cancel();
+  for (const std::unique_ptr<Job>& job : cancelled_) job->thread.join();
+}
 
 void BackgroundBundle::start(const Map& map, std::uint32_t component) {
   cancel();
@@ -180,10 +183,20 @@ std::optional<BundleMerge> BackgroundBundle::wait(Map& map) {
 }
 
 void BackgroundBundle::cancel() {
+  bury_dead();
   if (!job_) return;
   job_->stop.store(true, std::memory_order_relaxed);
-  if (job_->thread.joinable()) job_->thread.join();
+  if (job_->thread.joinable()) cancelled_.push_back(std::move(job_));
   job_.reset();
+}
+
+void BackgroundBundle::bury_dead() {
+  const auto ended = [](const std::unique_ptr<Job>& job) {
+    if (!job->done.load(std::memory_order_acquire)) return false;
+    job->thread.join();
+    return true;
+  };
+  cancelled_.erase(std::remove_if(cancelled_.begin(), cancelled_.end(), ended), cancelled_.end());
 }
 
 }  // namespace dxslam

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "core/camera.h"
 #include "map/map.h"
@@ -41,7 +42,7 @@ class BackgroundBundle {
  public:
   /// `in_line`: start() does the work itself, for runs that must be repeatable.
   BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line);
-  ~BackgroundBundle();
+  ~BackgroundBundle();  ///< waits for the thread to notice, an iteration at most
   BackgroundBundle(const BackgroundBundle&) = delete;
   BackgroundBundle& operator=(const BackgroundBundle&) = delete;
 
@@ -54,7 +55,7 @@ class BackgroundBundle {
   std::optional<BundleMerge> poll(Map& map);
   /// Waits for the result and merges it. Nothing if none is pending.
   std::optional<BundleMerge> wait(Map& map);
-  /// Gives up what is under way; waits for the solver to notice, an iteration at most.
+  /// Gives up what is under way. Does not wait: the thread ends by itself within an iteration.
   void cancel();
 
  private:
@@ -67,11 +68,13 @@ class BackgroundBundle {
     std::thread thread;
   };
   void adjust(Job& job) const;
+  void bury_dead();
 
   Camera camera_;
   BundleOptions options_;
   bool in_line_;
   std::unique_ptr<Job> job_;
+  std::vector<std::unique_ptr<Job>> cancelled_;  ///< their threads are about to end
 };
 
 }  // namespace dxslam

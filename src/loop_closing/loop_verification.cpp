@@ -19,7 +19,7 @@ constexpr int kRows = 6;
 constexpr double kMinViewCosine = 0.5;  // farther round, a point is taken for unseen
 constexpr double kMaxDistanceRatio = 2.5;
 constexpr int kMinExpectedInCell = 3;  // points due in a cell that is worth counting
-constexpr int kMinExpected = 20;       // points in view of a neighbour that is worth asking
+constexpr int kMinExpected = 40;       // points in view of a neighbour that is worth asking
 
 int shared_points(const Keyframe& keyframe, KeyframeId other) {
   for (const Covisible& c : keyframe.covisibles) {
@@ -106,26 +106,15 @@ class LoopVerifier {
   }
 
   LoopRejection refine() {
-    const KeypointGrid grid(query_frame().pixels);
     for (const double share : {1.0, 0.5}) {
-      const std::vector<PixelPrediction> predictions =
-          predict(world_from_query_, share * options_.search_radius);
-      report_.expected = static_cast<int>(predictions.size());
-      matches_ = match_guided(predictions, descriptors_, query_frame(), grid, {}, guided());
-      for (Match& m : matches_) {
-        m.a = predictions[static_cast<std::size_t>(m.a)].descriptor_row;
-      }
-      report_.guided_matches = static_cast<int>(matches_.size());
-      const PoseReport pose =
-          optimize_pose(camera_, world_from_query_, observations(), options_.pose);
-      if (!pose.success) return LoopRejection::kNoPose;
-      world_from_query_ = pose.world_from_camera;
-      report_.inliers = pose.inliers;
-      report_.rms_pixels = pose.rms_pixels;
-      inlier_ = pose.inlier;
-      expected_pixels_.clear();
-      for (const PixelPrediction& p : predictions) expected_pixels_.push_back(p.pixel);
+      fit_ = fit(query_frame(), world_from_query_, share * options_.search_radius);
+      report_.expected = static_cast<int>(fit_.predictions.size());
+      report_.guided_matches = static_cast<int>(fit_.matches.size());
+      if (!fit_.pose.success) return LoopRejection::kNoPose;
+      world_from_query_ = fit_.pose.world_from_camera;
     }
+    report_.inliers = fit_.pose.inliers;
+    report_.rms_pixels = fit_.pose.rms_pixels;
     return LoopRejection::kNone;
   }
 
@@ -156,15 +145,13 @@ class LoopVerifier {
       const SE3 query_from_neighbour = query_from_world * neighbour.world_from_camera;
       const SE3 as_long_as_there(query_from_neighbour.rotation(),
                                  report_.scale * query_from_neighbour.translation());
-      const std::vector<PixelPrediction> predictions =
-          predict(world_from_query_ * as_long_as_there, 0.5 * options_.search_radius);
-      const int expected = static_cast<int>(predictions.size());
+      const Fit seen =
+          fit(*neighbour.frame, world_from_query_ * as_long_as_there, options_.search_radius);
+      const int expected = static_cast<int>(seen.predictions.size());
       if (expected < kMinExpected) continue;
       ++report_.confirming;
-      const KeypointGrid grid(neighbour.frame->pixels);
-      const int found = static_cast<int>(
-          match_guided(predictions, descriptors_, *neighbour.frame, grid, {}, guided()).size());
-      if (found_share(found, expected, *neighbour.frame) >= options_.min_found_share) {
+      if (seen.pose.success && seen.pose.inliers >= options_.pnp.min_inliers &&
+          found_share(seen.pose.inliers, expected, *neighbour.frame) >= options_.min_found_share) {
         ++report_.confirmations;
       }
     }
@@ -173,12 +160,31 @@ class LoopVerifier {
                : LoopRejection::kNone;
   }
 
+  /// The points sought in a frame from a pose near the true one.
+  struct Fit {
+    std::vector<PixelPrediction> predictions;  // of the points that should be in view
+    std::vector<Match> matches;                // a: row of the point, b: keypoint
+    PoseReport pose;                           // as refined on the matches
+  };
+
+  Fit fit(const Frame& frame, const SE3& world_from_camera, double radius) const {
+    Fit fit;
+    fit.predictions = predict(world_from_camera, radius);
+    const KeypointGrid grid(frame.pixels);
+    const GuidedMatchingOptions matching{traits_.max_distance,
+                                         static_cast<float>(options_.search_ratio), 0.0F};
+    fit.matches = match_guided(fit.predictions, descriptors_, frame, grid, {}, matching);
+    for (Match& m : fit.matches) {
+      m.a = fit.predictions[static_cast<std::size_t>(m.a)].descriptor_row;
+    }
+    fit.pose = optimize_pose(camera_, world_from_camera,
+                             observations(frame, world_from_camera, fit.matches), options_.pose);
+    return fit;
+  }
+
   const Frame& query_frame() const { return *map_.keyframe(report_.query).frame; }
   const MapPoint& point(int row) const {
     return map_.point(points_[static_cast<std::size_t>(row)]);
-  }
-  GuidedMatchingOptions guided() const {
-    return {traits_.max_distance, static_cast<float>(options_.search_ratio), 0.0F};
   }
 
   // Depths are left out of the search, so that they can bear witness afterwards.
@@ -202,20 +208,20 @@ class LoopVerifier {
     return predictions;
   }
 
-  bool depth_agrees(const Match& m) const {
-    const double measured =
-        static_cast<double>(query_frame().depths[static_cast<std::size_t>(m.b)]);
-    const double z = (world_from_query_.inverse() * point(m.a).position).z();
+  bool depth_agrees(const Frame& frame, const SE3& camera_from_world, const Match& m) const {
+    const double measured = static_cast<double>(frame.depths[static_cast<std::size_t>(m.b)]);
+    const double z = (camera_from_world * point(m.a).position).z();
     return std::abs(z - measured) <= options_.depth_tolerance * z;
   }
 
-  std::vector<PoseObservation> observations() const {
-    const Frame& frame = query_frame();
+  std::vector<PoseObservation> observations(const Frame& frame, const SE3& world_from_camera,
+                                            const std::vector<Match>& matches) const {
+    const SE3 camera_from_world = world_from_camera.inverse();
     std::vector<PoseObservation> observations;
-    for (const Match& m : matches_) {
+    for (const Match& m : matches) {
       const auto k = static_cast<std::size_t>(m.b);
       // Beside an edge the pixel may be right where the depth is that of another surface.
-      const bool use_depth = frame.has_depth(k) && depth_agrees(m);
+      const bool use_depth = frame.has_depth(k) && depth_agrees(frame, camera_from_world, m);
       observations.push_back({point(m.a).position, frame.pixels[k].cast<double>(),
                               use_depth ? camera_.bf() / static_cast<double>(frame.depths[k]) : 0.0,
                               static_cast<double>(frame.sigmas[k])});
@@ -233,14 +239,14 @@ class LoopVerifier {
   void collect_inliers() {
     std::array<int, kColumns * kRows> found{};
     std::array<int, kColumns * kRows> expected{};
-    for (std::size_t i = 0; i < matches_.size(); ++i) {
-      if (inlier_[i] == 0) continue;
-      const auto k = static_cast<std::size_t>(matches_[i].b);
+    for (std::size_t i = 0; i < fit_.matches.size(); ++i) {
+      if (fit_.pose.inlier[i] == 0) continue;
+      const auto k = static_cast<std::size_t>(fit_.matches[i].b);
       report_.inlier_matches.push_back(
-          {static_cast<std::uint32_t>(k), points_[static_cast<std::size_t>(matches_[i].a)]});
+          {static_cast<std::uint32_t>(k), points_[static_cast<std::size_t>(fit_.matches[i].a)]});
       ++found[cell_of(query_frame().pixels[k])];
     }
-    for (const Eigen::Vector2f& pixel : expected_pixels_) ++expected[cell_of(pixel)];
+    for (const PixelPrediction& p : fit_.predictions) ++expected[cell_of(p.pixel)];
     int due = 0;
     int covered = 0;
     for (std::size_t c = 0; c < found.size(); ++c) {
@@ -265,7 +271,7 @@ class LoopVerifier {
     const SE3 camera_from_world = world_from_query_.inverse();
     int measured = 0;
     int agreeing = 0;
-    for (const Match& m : matches_) {
+    for (const Match& m : fit_.matches) {
       const auto k = static_cast<std::size_t>(m.b);
       if (!frame.has_depth(k)) continue;
       const Eigen::Vector3d in_camera = camera_from_world * point(m.a).position;
@@ -274,7 +280,7 @@ class LoopVerifier {
       const double sigma = static_cast<double>(frame.sigmas[k]);
       if (in_camera.z() <= 0.0 || error2 > options_.pose.chi2_pixel * sigma * sigma) continue;
       ++measured;
-      if (depth_agrees(m)) ++agreeing;
+      if (depth_agrees(frame, camera_from_world, m)) ++agreeing;
     }
     return measured > 0 ? static_cast<double>(agreeing) / measured : 1.0;
   }
@@ -305,10 +311,9 @@ class LoopVerifier {
   LoopVerification report_;
   std::vector<PointId> points_;  // of the candidate's group, less those that the query sees
   cv::Mat descriptors_;          // one row a point
-  std::vector<Match> matches_;   // a: row of the point, b: keypoint of the query
-  std::vector<char> inlier_;     // one a match
-  std::vector<Eigen::Vector2f> expected_pixels_;  // of the points that should be in view
-  SE3 world_from_query_;                          // in the candidate's world
+  std::vector<Match> matches_;   // by descriptor alone; a: row of the point, b: keypoint
+  Fit fit_;                      // of the query
+  SE3 world_from_query_;         // in the candidate's world
 };
 
 }  // namespace

@@ -42,10 +42,10 @@ struct LoopVerificationOptions {
   double search_radius = 10.0;
   double search_ratio = 0.95;
   int min_inliers = 30;
-  double min_inlier_ratio = 0.5;
-  double min_found_share = 0.15;
+  double min_inlier_ratio = 0.25;
+  double min_found_share = 0.05;
   int min_cells = 8;
-  double min_covered_share = 0.35;
+  double min_covered_share = 0.4;
   double depth_tolerance = 0.1;
   double min_depth_share = 0.6;
   int confirming_keyframes = 5;
