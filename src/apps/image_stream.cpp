@@ -26,15 +26,17 @@ struct Part {
   std::string folder;
   std::size_t first = 0;
   std::size_t end = std::numeric_limits<std::size_t>::max();
+  std::size_t step = 1;
 };
 
 Part parse_part(const std::string& source) {
-  static const std::regex kPart("(.+)@([0-9]{1,9})?:([0-9]{1,9})?");
+  static const std::regex kPart("(.+)@([0-9]{1,9})?:([0-9]{1,9})?(?::([1-9][0-9]{0,8}))?");
   std::smatch match;
   if (fs::exists(source) || !std::regex_match(source, match, kPart)) return {source};
   Part part{match[1]};
   if (match[2].matched) part.first = std::stoul(match[2]);
   if (match[3].matched) part.end = std::stoul(match[3]);
+  if (match[4].matched) part.step = std::stoul(match[4]);
   return part;
 }
 
@@ -73,7 +75,7 @@ void ImageStream::add_source(const std::string& source, std::size_t stride) {
     throw InputError(
         fmt::format("{}: has {} images, expected some in the part asked for", source, count));
   }
-  for (std::size_t i = part.first; i < std::min(count, part.end); i += stride) {
+  for (std::size_t i = part.first; i < std::min(count, part.end); i += part.step * stride) {
     images_.push_back({folders_.size(), i, photos.empty() ? std::string() : photos[i]});
   }
   folders_.push_back(part.folder);
@@ -81,6 +83,22 @@ void ImageStream::add_source(const std::string& source, std::size_t stride) {
 
 void ImageStream::skip(const std::string& reason) {
   if (skipped_++ == 0) first_skipped_ = reason;
+}
+
+cv::Mat ImageStream::read_photo(const std::string& path) {
+  try {
+    return read_color_image(path);
+  } catch (const InputError& error) {
+    skip(error.what());
+    return {};
+  }
+}
+
+cv::Mat ImageStream::read_frame(RgbdSequence& sequence, std::size_t index) {
+  const std::optional<RgbdImage> frame = sequence.read(index);
+  if (frame) return frame->color;
+  skip(sequence.skipped().back().reason);
+  return {};
 }
 
 void ImageStream::visit(std::size_t start,
@@ -92,24 +110,12 @@ void ImageStream::visit(std::size_t start,
     Item item;
     item.photo = !image.photo.empty();
     item.first = item.photo || i == 0 || images_[i - 1].source != image.source;
-    if (item.photo) {
-      try {
-        item.image = read_color_image(image.photo);
-      } catch (const InputError& error) {
-        skip(error.what());
-        continue;
-      }
-    } else {
-      if (image.source != open_source) sequence = open_sequence(folders_[image.source]);
+    if (!item.photo && image.source != open_source) {
+      sequence = open_sequence(folders_[image.source]);
       open_source = image.source;
-      const std::optional<RgbdImage> frame = sequence->read(image.index);
-      if (!frame) {
-        skip(sequence->skipped().back().reason);
-        continue;
-      }
-      item.image = frame->color;
     }
-    if (!visit(i, item)) return;
+    item.image = item.photo ? read_photo(image.photo) : read_frame(*sequence, image.index);
+    if (!item.image.empty() && !visit(i, item)) return;
   }
 }
 

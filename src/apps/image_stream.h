@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/sequence.h"
+
 namespace dxslam::apps {
 
 /// The colour images of recordings and of folders of photos, one after another. Depth is not used.
@@ -21,8 +23,9 @@ class ImageStream {
   };
 
   /// Each source is the folder of a recording (any format that `dxslam run` reads) or of photos
-  /// (PNG and JPEG files, by name), whole or in part: FOLDER@FIRST:END, both counted from 0, END
-  /// left out. `stride` n takes every n-th image. Throws InputError if a source cannot be used.
+  /// (PNG and JPEG files, by name), whole or in part: FOLDER@FIRST:END or FOLDER@FIRST:END:STEP,
+  /// counted from 0, END left out. `stride` n takes every n-th of these images. Throws InputError
+  /// if a source cannot be used.
   ImageStream(const std::vector<std::string>& sources, std::size_t stride);
 
   std::size_t size() const { return images_.size(); }
@@ -43,6 +46,9 @@ class ImageStream {
 
   void add_source(const std::string& source, std::size_t stride);
   void skip(const std::string& reason);
+  // Nothing where the image cannot be read.
+  cv::Mat read_photo(const std::string& path);
+  cv::Mat read_frame(RgbdSequence& sequence, std::size_t index);
 
   std::vector<std::string> folders_;  // by source
   std::vector<Image> images_;

@@ -108,28 +108,26 @@ void VocabularyTrainer::forget_rare_words() {
   for (std::uint32_t& word : last_words_) word = new_number[word];
 }
 
+cv::Mat VocabularyTrainer::lasting_words() const {
+  const cv::Mat means = words_.means();
+  cv::Mat rows;
+  for (std::size_t word = 0; word < words_.size(); ++word) {
+    if (words_.total(word) < static_cast<float>(options_.min_observations)) continue;
+    rows.push_back(means.row(static_cast<int>(word)));
+  }
+  return rows;
+}
+
 Vocabulary VocabularyTrainer::finish(const std::string& name,
                                      const TrainingProgress& progress) const {
-  VocabularyTrainingOptions options = options_;
-  cv::Mat rows;
-  if (options_.method == "kmeans") {
-    rows = sample_.all_rows();
-  } else {
-    const cv::Mat means = words_.means();
-    for (const std::uint32_t word : by_members(words_)) {
-      if (words_.total(word) < static_cast<float>(options_.min_observations)) break;
-      if (options_.words > 0 && rows.rows == options_.words) break;
-      rows.push_back(means.row(static_cast<int>(word)));
-    }
-    options.words = 0;  // each of these is a word, however they are grouped
-  }
+  const cv::Mat rows = options_.method == "kmeans" ? sample_.all_rows() : lasting_words();
   if (rows.rows < 2) {
     throw InputError(
         fmt::format("{} images gave {} words, expected at least 2; are they of one "
                     "sequence, and is there anything to see?",
                     images_, rows.rows));
   }
-  VocabularyTree tree = grow_word_tree(rows, {}, options, progress);
+  VocabularyTree tree = grow_word_tree(rows, {}, options_, progress);
   weigh_words(tree, sample_.images());
   tree.name = name;
   return Vocabulary::from_tree(tree);

@@ -19,7 +19,8 @@ namespace dxslam {
 ///
 /// incremental: descriptors of each image are matched with those of the image before. A matched one
 /// joins the word of its match if it is among the best by keypoint score; an unmatched one opens
-/// a new word. At the end words are grouped into parents up to the root.
+/// a new word. At the end words are grouped into parents up to the root; if there
+/// are more than `words`, the lowest groups take the place of their members.
 /// kmeans: hierarchical k-means over the descriptors of a sample of the images (the paper's
 /// "no-incre").
 ///
@@ -53,6 +54,8 @@ class VocabularyTrainer {
  private:
   void join_words(const Features& features);
   void forget_rare_words();
+  // Centres of the open words that enough images have joined.
+  cv::Mat lasting_words() const;
 
   DescriptorTraits traits_;
   VocabularyTrainingOptions options_;

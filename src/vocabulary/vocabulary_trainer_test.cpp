@@ -127,7 +127,7 @@ TEST(IncrementalTraining, KeepsMemoryBoundedAndTheWordsSeenMost) {
   EXPECT_EQ(trainer.finish("lasting").word_count(), 50U);
 }
 
-TEST(IncrementalTraining, TakesTheMostSeenWordsWhereThereIsALimit) {
+TEST(IncrementalTraining, GroupsWordsWhereThereIsALimit) {
   const Walk walk(false);
   EXPECT_EQ(train(walk, options_for("incremental", 100)).word_count(), 100U);
 }

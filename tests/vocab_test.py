@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright 2026 The dxslam authors
+"""Runs `dxslam vocab` as a user does: training, inspection, conversion, broken files.
+
+usage: vocab_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
+"""
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from cli_test import BAD_INPUT, BAD_USAGE, INTERRUPTED, PROGRAM, ROOT, dxslam
+
+FRAMES = 24
+
+
+class Vocab(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="dxslam_vocab_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        cls.recording = cls.folder / "recording"
+        done = dxslam("synth", cls.recording, "--frames", FRAMES, "--seed", 3)
+        if done.returncode:
+            raise RuntimeError(f"dxslam synth: exit {done.returncode}: {done.stderr}")
+        cls.vocabulary = cls.folder / "orb.fbow"
+        cls.trained = cls.train(cls.vocabulary)
+
+    @classmethod
+    def train(cls, out, *options, source=None):
+        words = () if "--words" in options else ("--words", 500)
+        return dxslam("vocab", "train", source or cls.recording, "--features", "orb", "--out", out,
+                      *words, *options)
+
+    def info(self, path):
+        done = dxslam("vocab", "info", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return dict(re.split(r"\s{2,}", line, maxsplit=1) for line in done.stdout.splitlines())
+
+    def refuse(self, done, *mentioned):
+        """The program said no in one sentence that holds all of `mentioned`."""
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        lines = done.stderr.strip().splitlines()
+        self.assertEqual(len(lines), 1, done.stderr)
+        for text in mentioned:
+            self.assertIn(str(text), lines[0])
+
+    def test_trains_as_the_paper(self):
+        self.assertEqual(self.trained.returncode, 0, self.trained.stderr)
+        info = self.info(self.vocabulary)
+        self.assertEqual(info["name"], "orb incremental")
+        self.assertEqual(info["words"], "500")
+        self.assertEqual(info["descriptors"], "32 bytes")
+        self.assertEqual(info["file"], "FBoW with checksum")
+
+    def test_trains_by_kmeans(self):
+        out = self.folder / "kmeans.fbow"
+        done = self.train(out, "--method", "kmeans", "--branching", 8, "--words", 0, "--depth", 2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        info = self.info(out)
+        self.assertEqual(info["depth"], "2")
+        self.assertLessEqual(int(info["words"]), 64)
+
+    def test_trains_on_a_part_and_on_photos(self):
+        out = self.folder / "photos.fbow"
+        photos = next(self.recording.glob("rgb"))
+        for source, images in ((f"{self.recording}@4:20:4", 4), (f"{photos}@:3", 9)):
+            done = self.train(out, source=source)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"from {images} images", done.stdout)
+        self.refuse(self.train(out, source=f"{self.recording}@24:"), "24 images")
+
+    def test_converts_there_and_back_without_loss(self):
+        text, back = self.folder / "orb.txt", self.folder / "back.fbow"
+        for source, target in ((self.vocabulary, text), (text, back)):
+            done = dxslam("vocab", "convert", source, target)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(text.read_text().splitlines()[0], r"^10 \d+ 0 0$")
+        self.assertEqual(self.info(text)["file"], "DBoW2 text")
+        kept = ("words", "weights", "depth", "descriptors", "inner nodes")
+        before, after = self.info(self.vocabulary), self.info(back)
+        self.assertEqual([before[key] for key in kept], [after[key] for key in kept])
+
+    def test_goes_on_after_an_interruption(self):
+        out, state = self.folder / "resumed.fbow", self.folder / "state"
+        process = subprocess.Popen(
+            [PROGRAM, "vocab", "train", self.recording, "--features", "orb", "--words", "500",
+             "--out", out, "--checkpoint", state], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(0.4)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        if process.returncode == INTERRUPTED:
+            self.assertFalse(out.exists())
+            self.assertTrue(state.exists())
+            self.refuse(self.train(out, "--checkpoint", state, "--match-ratio", "0.8"), state)
+            done = self.train(out, "--checkpoint", state)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("going on at image", done.stdout)
+        elif process.returncode == -signal.SIGINT:
+            self.skipTest("the program was not ready for the signal yet")
+        self.assertFalse(state.exists())
+        self.assertEqual(out.read_bytes(), self.vocabulary.read_bytes())
+
+    def test_refuses_what_is_no_vocabulary(self):
+        broken = self.folder / "broken.fbow"
+        content = self.vocabulary.read_bytes()
+        broken.write_bytes(content[:-1000])
+        self.refuse(dxslam("vocab", "info", broken), broken, "bytes")
+        damaged = bytearray(content)
+        damaged[len(content) // 2] ^= 1
+        broken.write_bytes(damaged)
+        self.refuse(dxslam("vocab", "info", broken), broken, "checksum")
+        self.refuse(dxslam("vocab", "convert", ROOT / "LICENSE", broken), "expected a vocabulary")
+        self.refuse(dxslam("vocab", "info", self.folder / "none"), "none")
+
+    def test_refuses_nonsense(self):
+        out = self.folder / "none.fbow"
+        self.refuse(self.train(out, "--branching", 1), "branching", "2 to 256")
+        self.refuse(self.train(out, source=self.folder / "missing"), "missing")
+        self.assertEqual(self.train(out, "--method", "magic").returncode, BAD_USAGE)
+        self.assertFalse(out.exists())
+
+
+class Shipped(unittest.TestCase):
+    """The vocabularies that come with the program fit its extractors."""
+
+    def test_are_whole(self):
+        for name, descriptors in (("hfnet", "64 floats"), ("orb", "32 bytes")):
+            path = ROOT / "models" / "vocabulary" / f"{name}.fbow"
+            done = dxslam("vocab", "info", path)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"{name} incremental", done.stdout)
+            self.assertIn(descriptors, done.stdout)
+            self.assertIn("FBoW with checksum", done.stdout)
+            self.assertLess(path.stat().st_size, 6_000_000)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[1:]])
