@@ -27,5 +27,7 @@ void add_features_command(CLI::App& app);
 void add_vocab_command(CLI::App& app);
 void add_loops_command(CLI::App& app);
 void add_map_command(CLI::App& app);
+void add_relocalize_command(CLI::App& app);
+void add_lifelong_command(CLI::App& app);
 
 }  // namespace dxslam::apps

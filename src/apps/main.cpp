@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "dxslam " DXSLAM_VERSION);
   app.require_subcommand(1);
   apps::add_run_command(app);
+  apps::add_lifelong_command(app);
   apps::add_eval_command(app);
   apps::add_synth_command(app);
   apps::add_config_command(app);
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   apps::add_vocab_command(app);
   apps::add_loops_command(app);
   apps::add_map_command(app);
+  apps::add_relocalize_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {

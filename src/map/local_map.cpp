@@ -78,6 +78,7 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId reference, std::uint64_t v
   const Keyframe& keyframe = map.keyframe(reference);
   local->version = version;
   local->reference = reference;
+  local->component = keyframe.component;
   local->reference_frame = keyframe.frame;
   local->world_from_reference = keyframe.world_from_camera;
   local->reference_points = keyframe.points;

@@ -36,6 +36,7 @@ struct LocalMapOptions {
 struct LocalMap {
   std::uint64_t version = 0;  ///< rises with every snapshot
   KeyframeId reference = kNoId;
+  std::uint32_t component = 0;  ///< of all that is in here
   FramePtr reference_frame;
   SE3 world_from_reference;
   std::vector<PointId> reference_points;  ///< one a keypoint of the reference; kNoId: none

@@ -106,6 +106,11 @@ void System::finish() {
   const Stopwatch watch;
   backend_.finish();
   times_.add("full_bundle", watch.ms());
+  note_map_size();
+}
+
+void System::note_map_size() {
+  map_sizes_.push_back({map().keyframe_count(), map().point_count()});
 }
 
 void System::hang_first_frames() {
@@ -144,6 +149,8 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted,
                                          std::optional<KeyframeRequest>& request) {
   const FramePtr& frame = extracted.frame;
   if (extracted.begins_sequence) {
+    if (options_.deterministic && !frames_.empty()) note_map_size();
+    if (!options_.deterministic && !frames_.empty()) tasks_.push([this] { note_map_size(); });
     // What was seen last says nothing about where the new recording begins.
     seeking_ = tracker_.has_local_map() || map_loaded_;
     tracker_.restart();

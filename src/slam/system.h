@@ -43,6 +43,12 @@ struct ComponentSummary {
   std::size_t frames = 0;  ///< tracked in it
 };
 
+/// How large the map was when a recording ended.
+struct MapSize {
+  std::size_t keyframes = 0;
+  std::size_t points = 0;
+};
+
 /// The whole system (paper, Fig. 1): feature extraction, tracking, and mapping with loop closing
 /// and relocalization, each in its own thread, joined by bounded queues. In deterministic mode the
 /// same steps run one after another in the caller's thread, and equal input gives equal output to
@@ -92,6 +98,8 @@ class System {
   Trajectory keyframe_trajectory(std::optional<std::uint32_t> component = std::nullopt) const;
   const Map& map() const { return backend_.map(); }
   const Backend& backend() const { return backend_; }
+  /// One a recording (begin_sequence), in order.
+  const std::vector<MapSize>& map_sizes() const { return map_sizes_; }
   const MappingTotals& mapping_totals() const { return totals_; }
   const StageTimes& times() const { return times_; }
   const FeatureExtractor& extractor() const { return *extractor_; }
@@ -129,6 +137,7 @@ class System {
   LocalMapPtr newest_local_map();
   void count(const MappingReport& report);
   void hang_first_frames();
+  void note_map_size();
   std::optional<std::uint32_t> component_of(const TrackedFrame& frame) const;
   bool has_error();
   bool mapping() const { return options_.mode == "slam"; }
@@ -148,6 +157,7 @@ class System {
   Backend backend_;
   std::vector<TrackedFrame> frames_;
   std::vector<Root> roots_;
+  std::vector<MapSize> map_sizes_;
   MappingTotals totals_;
   StageTimes times_;
   MapCallback autosave_;

@@ -345,6 +345,7 @@ TrackedFrame Tracker::report(const FramePtr& frame, const OptionalEstimate& esti
   result.rms_pixels = estimate->rms_pixels;
   result.recovered = estimate->recovered;
   if (local_) {
+    result.component = local_->component;
     result.reference = local_->reference;
     result.reference_from_camera =
         local_->world_from_reference.inverse() * estimate->world_from_camera;

@@ -18,6 +18,8 @@ struct TrackedFrame {
   double stamp = 0.0;
   TrackingState state = TrackingState::kNotStarted;
   SE3 world_from_camera;  ///< as known when the frame was tracked
+  /// Of the map, in whose world the pose is; kNoId for the frame that begins a new one.
+  std::uint32_t component = kNoId;
   KeyframeId reference = kNoId;
   SE3 reference_from_camera;
   int keypoints = 0;
