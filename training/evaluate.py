@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .data import LAST_TRAINING_FRAME
-from .matching import Detection, Extractor, compile_model, run_pairs
+from .matching import Detection, Extractor, Network, run_pairs
 from .recall import run_recall
 
 REDKITCHEN = "7scenes_redkitchen"
@@ -22,10 +22,15 @@ Table = dict[str, dict[str, dict[str, float]]]
 
 
 def summarise(rows: list[dict]) -> dict[str, dict[str, float]]:
-    """Mean correct matches and share of correct ones a block; all pairs, and those wholly in unseen frames."""
+    """Mean correct matches and share of correct ones a block; all pairs, those wholly in frames that were trained on (to
+    choose options by), and those wholly in unseen ones."""
     table = {}
     for block in dict.fromkeys(r["block"] for r in rows):
-        for part, kept in (("all", lambda r: True), ("held out", lambda r: r["first"] > LAST_TRAINING_FRAME)):
+        for part, kept in (
+            ("all", lambda r: True),
+            ("trained on", lambda r: r["second"] <= LAST_TRAINING_FRAME),
+            ("held out", lambda r: r["first"] > LAST_TRAINING_FRAME),
+        ):
             chosen = [r for r in rows if r["block"] == block and kept(r)]
             shares = [r["correct"] / max(r["known"], 1) for r in chosen]
             mean = float(np.mean([r["correct"] for r in chosen]))
@@ -55,12 +60,12 @@ def main() -> None:
     table: Table = {}
     places: dict[str, dict[str, float]] = {}
     for path in a.models:
-        model = compile_model(path)
-        extractor = Extractor(model, Detection(radius=a.radius))
+        network = Network(path)
+        extractor = Extractor(network, Detection(radius=a.radius))
         table[path.stem] = summarise(run_pairs(extractor, a.data / REDKITCHEN, a.gain))
         print(markdown({path.stem: table[path.stem]}), flush=True)
-        if "global_descriptor" in extractor.names:
-            places[path.stem] = run_recall(model, a.data / REDKITCHEN, a.gain)
+        if network.has_global:
+            places[path.stem] = run_recall(network, a.data / REDKITCHEN, a.gain)
             print(path.stem, places[path.stem], flush=True)
     if a.out:
         a.out.write_text(json.dumps({"matches": table, "places": places}, indent=1) + "\n")

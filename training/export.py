@@ -49,10 +49,15 @@ def main() -> None:
         worst = max(float((x - y).abs().max()) for x, y in zip(before, graph(image), strict=True))
     if worst > 1e-2:
         raise SystemExit(f"fusing the branches changed the outputs by {worst}")
-    names = ["keypoint_logits", "descriptors", "global_descriptor"][: len(before)]
-    axes = {name: {2: f"{name}_h", 3: f"{name}_w"} for name in ("image", "keypoint_logits", "descriptors")}
+    names = ["keypoint_logits", "descriptors", "features", "global_descriptor"][: len(before)]
+    axes = {name: {2: f"{name}_h", 3: f"{name}_w"} for name in ("image", "keypoint_logits", "descriptors", "features")}
     torch.onnx.register_custom_op_symbolic("aten::pixel_unshuffle", _space_to_depth, OPSET)
-    options = {"input_names": ["image"], "output_names": names, "dynamic_axes": axes, "opset_version": OPSET}
+    options = {
+        "input_names": ["image"],
+        "output_names": names,
+        "dynamic_axes": {k: axes[k] for k in axes if k == "image" or k in names},
+        "opset_version": OPSET,
+    }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         torch.onnx.export(graph, (image,), str(a.out), dynamo=False, **options)

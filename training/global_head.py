@@ -18,10 +18,10 @@ class GlobalConfig:
     """Sizes of the global branch."""
 
     width: int = 128
-    blocks: int = 3
+    blocks: int = 1
     semantic: int = 112  # channels of the teacher's map that the branch reproduces
     clusters: int = 32
-    descriptor: int = 512
+    descriptor: int = 256
 
     def as_dict(self) -> dict[str, int]:
         """Plain dictionary, for checkpoints."""
@@ -90,6 +90,6 @@ class HfNet(nn.Module):
         self.head = GlobalHead(network.width, head)
 
     def outputs(self, image: Tensor) -> tuple[Tensor, ...]:
-        """What is shipped: keypoint logits, descriptors and the global descriptor."""
+        """What is shipped: keypoint logits, descriptors, what the head reads, and the global descriptor."""
         logits, descriptors, features = self.local(image)
-        return logits, descriptors, self.head(features)
+        return logits, descriptors, features, self.head(features)

@@ -12,6 +12,9 @@ from pathlib import Path
 
 import openvino as ov
 
+from .graphs import BLOCKS, FEATURES, INPUT_STEP
+from .matching import INPUT_DEVIATION_FLOOR
+
 TEXT = """\
 # Written by training/manifest.py; manifests/README.md documents the format.
 format: 1
@@ -21,13 +24,24 @@ licence: Apache-2.0 (the weights are this project's own)
 files:
 {files}
 input:
-  name: image
+  name: {blocks}
   channels: 1
-  scale: 1.0  # grey 0..255; the graph normalises to zero mean and unit deviation itself
+  normalization: instance
+  deviation_floor: {floor}
+  unshuffle: 4
+  quantization_step: {step:.9g}
   size_multiple: 32
 outputs:
-{outputs}
-{globals}detector:
+  keypoint_logits: {{name: keypoint_logits}}
+  descriptors: {{name: descriptors}}
+  features: {{name: {features}}}
+global_head:
+  files:
+{head_files}
+  input: {features}
+  output: global_descriptor
+global_dimension: {length}
+detector:
   cell_size: 8
   score_threshold: 0.01
   nms_radius: 3
@@ -41,42 +55,50 @@ descriptor:
   max_distance: 0.9
 info:
   training_run: {run}
-  training_step: {step}
-  data: NYU Depth v2 (colour), an ImageNet sample, Scene-15 indoor classes, 7-Scenes RedKitchen frames 0 to 598
-  teachers: EdgePoint2-L64 (MIT){global_teacher}
+  training_step: {training_step}
+{onnx}  data: NYU Depth v2 (colour), an ImageNet sample, Scene-15 indoor classes, 7-Scenes RedKitchen frames 0 to 598
+  teachers: EdgePoint2-L64 (MIT), EfficientNet-Lite0 (Apache-2.0)
 """
-OUTPUTS = {
-    "keypoint_logits": "keypoint_logits: {name: keypoint_logits}",
-    "descriptors": "descriptors: {name: descriptors}",
-    "global_descriptor": "global: {name: global_descriptor}",
-}
+ONNX = "  onnx: hfnet.onnx takes the image itself, 0 to 255, and has all outputs\n"
 
 
-def file_entry(kind: str, graph: Path) -> str:
-    """YAML of one precision of the model."""
+def file_entry(kind: str, graph: Path, indent: str) -> str:
+    """YAML of one precision of a graph."""
     hashes = [hashlib.sha256(f.read_bytes()).hexdigest() for f in (graph, graph.with_suffix(".bin"))]
-    lines = [f"  {kind}:", f"    file: {graph.name}", f"    sha256: {hashes[0]}", f"    weights_sha256: {hashes[1]}"]
-    return "\n".join(lines)
+    lines = [f"{kind}:", f"  file: {graph.name}", f"  sha256: {hashes[0]}", f"  weights_sha256: {hashes[1]}"]
+    return "\n".join(indent + line for line in lines)
+
+
+def entries(folder: Path, name: str, indent: str) -> str:
+    """YAML of both precisions of a graph."""
+    graphs = {"float": folder / f"{name}.xml", "int8": folder / f"{name}_int8.xml"}
+    return "\n".join(file_entry(kind, graph, indent) for kind, graph in graphs.items())
+
+
+def length_of(graph: Path, output: str) -> int:
+    """Channels of an output."""
+    model = ov.Core().read_model(graph)
+    return model.output(output).get_partial_shape()[1].get_length()
 
 
 def manifest(folder: Path, run: str, step: int) -> str:
     """The whole text."""
-    graphs = {"float": folder / "hfnet.xml", "int8": folder / "hfnet_int8.xml"}
-    model = ov.Core().read_model(graphs["float"])
-    shapes = {o.any_name: o.get_partial_shape() for o in model.outputs}
-    has_global = "global_descriptor" in shapes
-    length = shapes["global_descriptor"][1].get_length() if has_global else 0
-    size = shapes["descriptors"][1].get_length()
-    extra = f" and a {length}-D global descriptor" if has_global else ""
+    size = length_of(folder / "hfnet.xml", "descriptors")
+    length = length_of(folder / "hfnet_global.xml", "global_descriptor")
     return TEXT.format(
-        description=f"dxslam's own network, keypoint scores and {size}-D descriptors at 1/8{extra}",
-        files="\n".join(file_entry(kind, graph) for kind, graph in graphs.items() if graph.exists()),
-        outputs="\n".join("  " + OUTPUTS[name] for name in shapes),
-        globals=f"global_dimension: {length}\n" if has_global else "",
+        description=f"dxslam's own network, keypoint scores and {size}-D descriptors at 1/8 and a {length}-D "
+        "global descriptor",
+        files=entries(folder, "hfnet", "  "),
+        head_files=entries(folder, "hfnet_global", "    "),
+        blocks=BLOCKS,
+        floor=INPUT_DEVIATION_FLOOR,
+        step=INPUT_STEP,
+        features=FEATURES,
+        length=length,
         dimension=size,
         run=run,
-        step=step,
-        global_teacher=", EfficientNet-Lite0 (Apache-2.0)" if has_global else "",
+        training_step=step,
+        onnx=ONNX if (folder / "hfnet.onnx").exists() else "",
     )
 
 

@@ -12,10 +12,12 @@ import openvino as ov
 from numpy.typing import NDArray
 
 from .data import Frame, lift, load_frame, project
+from .graphs import BLOCKS, FEATURES, INPUT_STEP
 from .teacher import sample
 
 Array = NDArray[np.float32]
 CORRECT_PIXELS = 8.0
+INPUT_DEVIATION_FLOOR = 0.25  # grey levels, as in network.py
 
 
 @dataclass(frozen=True)
@@ -54,19 +56,60 @@ def darken(grey: NDArray[np.uint8], gain: float, rng: np.random.Generator) -> ND
     return np.clip(x * 255, 0, 255).astype(np.uint8)
 
 
-def compile_model(path: Path, precision: str = "f32", threads: int = 2) -> ov.CompiledModel:
-    """The network on the CPU, without silent bfloat16."""
-    options = {"INFERENCE_NUM_THREADS": threads, "INFERENCE_PRECISION_HINT": precision, "PERFORMANCE_HINT": "LATENCY"}
-    return ov.Core().compile_model(str(path), "CPU", options)
+def blocks_of(grey: NDArray[np.uint8]) -> Array:
+    """What the local part reads: the image at zero mean and unit deviation, blocks of 4x4 as channels."""
+    pixels = grey.astype(np.float64)
+    pixels = (pixels - pixels.mean()) / (pixels.std() + INPUT_DEVIATION_FLOOR)
+    height, width = grey.shape
+    blocks = pixels.reshape(height // 4, 4, width // 4, 4).transpose(1, 3, 0, 2)
+    return blocks.reshape(1, 16, height // 4, width // 4).astype(np.float32)
+
+
+class Network:
+    """A model on the CPU, without silent bfloat16: ours, as one graph or with its global head in a file beside it, or an
+    EdgePoint2 file."""
+
+    def __init__(self, path: Path, threads: int = 2) -> None:
+        self._options = {"INFERENCE_NUM_THREADS": threads, "INFERENCE_PRECISION_HINT": "f32"}
+        self.model = self._compile(path)
+        head = path.with_name(path.name.replace("hfnet", "hfnet_global"))
+        self.names = [output.any_name for output in self.model.outputs]
+        self.head = self._compile(head) if FEATURES in self.names and head != path and head.exists() else None
+        self.is_teacher = "score" in self.names
+        self.has_global = self.head is not None or "global_descriptor" in self.names
+
+    def _compile(self, path: Path) -> ov.CompiledModel:
+        return ov.Core().compile_model(str(path), "CPU", self._options)
+
+    def __call__(self, grey: NDArray[np.uint8]) -> dict[str, Array]:
+        """Outputs by name, but for a separate head's."""
+        result = self.model([self._input(grey)])
+        return {name: np.array(result[k]) for k, name in enumerate(self.names)}
+
+    def _input(self, grey: NDArray[np.uint8]) -> NDArray:
+        if self.is_teacher:
+            return (grey.astype(np.float32) / 255)[None, None]
+        if self.model.input(0).any_name != BLOCKS:
+            return grey.astype(np.float32)[None, None]
+        blocks = blocks_of(grey)
+        if self.model.input(0).element_type == ov.Type.f32:
+            return blocks
+        return np.clip(np.rint(blocks / INPUT_STEP), -127, 127).astype(np.int8)
+
+    def global_descriptor(self, grey: NDArray[np.uint8]) -> Array:
+        """Of unit length."""
+        out = self(grey)
+        if self.head is not None:
+            return np.array(self.head([out[FEATURES]])[0])[0]
+        return out["global_descriptor"][0]
 
 
 class Extractor:
     """Keypoints and descriptors of a grey image by one of our models, or by an EdgePoint2 file."""
 
-    def __init__(self, model: ov.CompiledModel, detection: Detection = Detection()) -> None:
-        self.model, self.detection = model, detection
-        self.names = [output.any_name for output in model.outputs]
-        self.is_teacher = "score" in self.names
+    def __init__(self, network: Network, detection: Detection = Detection()) -> None:
+        self.network, self.detection = network, detection
+        self.is_teacher = network.is_teacher
 
     def scores(self, out: dict[str, Array]) -> Array:
         """Full-resolution scores."""
@@ -80,9 +123,7 @@ class Extractor:
 
     def __call__(self, grey: NDArray[np.uint8]) -> tuple[Array, Array]:
         """Positions (N,2) and unit descriptors (N,D)."""
-        scale = 255.0 if self.is_teacher else 1.0
-        result = self.model([(grey.astype(np.float32) / scale)[None, None]])
-        out = {name: result[k] for k, name in enumerate(self.names)}
+        out = self.network(grey)
         d, score = self.detection, self.scores(out)
         size = 2 * d.radius + 1
         peaks = (cv2.dilate(score, np.ones((size, size), np.uint8)) == score) & (
@@ -122,5 +163,5 @@ def run_pairs(extractor: Extractor, folder: Path, gain: float = 0.12) -> list[di
         a, b = load_frame(folder, pair.first), load_frame(folder, pair.second)
         second = darken(b.grey, gain, rng) if pair.dark else b.grey
         good, known = correct_matches(a, b, extractor(a.grey), extractor(second))
-        rows.append({"block": pair.block, "first": pair.first, "correct": good, "known": known})
+        rows.append({"block": pair.block, "first": pair.first, "second": pair.second, "correct": good, "known": known})
     return rows

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ONNX graph to OpenVINO IR: FP16-stored weights, and INT8 by post-training quantisation.
+"""ONNX graph to OpenVINO IR, local part and global head: FP16-stored weights, and INT8 by post-training quantisation.
 
 python -m training.quantise MODEL.onnx --data DIR --out models/hfnet
 Runs in the `deploy` environment (OpenVINO and NNCF, no torch).
@@ -19,7 +19,17 @@ from numpy.typing import NDArray
 
 from .data import LAST_TRAINING_FRAME, photo_files
 from .degrade import low_light, photometric
-from .first_layer import quantise_first_layer
+from .graphs import (
+    FEATURES,
+    cut_head,
+    cut_local,
+    feature_range,
+    float_features,
+    head_input,
+    integer_features,
+    integer_input,
+)
+from .matching import blocks_of
 
 Tensor = NDArray[np.float32]
 CALIBRATION_IMAGES = 320
@@ -36,10 +46,10 @@ def calibration_files(data: Path, count: int) -> list[Path]:
     ]
 
 
-def calibration_images(data: Path, count: int = CALIBRATION_IMAGES) -> list[Tensor]:
-    """Network inputs: as they are, dark and noisy, or otherwise degraded."""
+def calibration_blocks(data: Path, count: int) -> list[Tensor]:
+    """Inputs of the local part, from images as they are, dark and noisy, or otherwise degraded."""
     rng = np.random.default_rng(0)
-    images = []
+    inputs = []
     for file in calibration_files(data, count):
         grey = cv2.resize(cv2.imread(str(file), cv2.IMREAD_GRAYSCALE), (640, 480)).astype(np.float32) / 255
         draw = rng.random()
@@ -47,19 +57,8 @@ def calibration_images(data: Path, count: int = CALIBRATION_IMAGES) -> list[Tens
             grey = low_light(grey, rng)
         elif draw < DARK_SHARE + 0.25:
             grey = photometric(grey, rng)
-        images.append(np.clip(np.floor(grey * 255), 0, 255).astype(np.float32)[None, None])
-    return images
-
-
-def normalisation_nodes(model: ov.Model) -> list[str]:
-    """Operations before the space-to-depth: they stay in floating point, or darkness would be rounded away."""
-    names = []
-    for node in model.get_ordered_ops():
-        if node.get_type_name() == "SpaceToDepth":
-            return names
-        if node.get_type_name() not in ("Parameter", "Constant", "Result"):
-            names.append(node.get_friendly_name())
-    raise SystemExit("the graph has no SpaceToDepth operation")
+        inputs.append(blocks_of(np.clip(np.floor(grey * 255), 0, 255).astype(np.uint8)))
+    return inputs
 
 
 def tail_nodes(model: ov.Model) -> list[str]:
@@ -68,27 +67,51 @@ def tail_nodes(model: ov.Model) -> list[str]:
     return [n.get_friendly_name() for n in model.get_ordered_ops() if n.get_type_name() in tail_types]
 
 
+def quantised(model: ov.Model, inputs: list[Tensor], kept: list[str]) -> ov.Model:
+    """INT8 by calibration; `kept` stays in floating point."""
+    return nncf.quantize(
+        model,
+        nncf.Dataset(inputs),
+        subset_size=len(inputs),
+        fast_bias_correction=False,
+        ignored_scope=nncf.IgnoredScope(names=kept),
+    )
+
+
+def save(model: ov.Model, path: Path) -> None:
+    """Weights as FP16 where they are not integers."""
+    ov.save_model(model, path, compress_to_fp16=True)
+
+
 def main() -> None:
     """Command line."""
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("model", type=Path)
     p.add_argument("--data", type=Path, required=True)
     p.add_argument("--out", type=Path, required=True)
+    p.add_argument("--images", type=int, default=CALIBRATION_IMAGES, help="for the calibration")
     a = p.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
     nncf.set_log_level(logging.ERROR)
-    model = ov.Core().read_model(a.model)
-    ov.save_model(model, a.out / "hfnet.xml", compress_to_fp16=True)
-    kept = sorted(set(normalisation_nodes(model)) | set(tail_nodes(model)))
-    quantised = nncf.quantize(
-        model,
-        nncf.Dataset(calibration_images(a.data)),
-        subset_size=CALIBRATION_IMAGES,
-        fast_bias_correction=False,
-        ignored_scope=nncf.IgnoredScope(names=kept),
-    )
-    quantise_first_layer(quantised)
-    ov.save_model(quantised, a.out / "hfnet_int8.xml", compress_to_fp16=True)
+    whole = ov.Core().read_model(a.model)
+    blocks = calibration_blocks(a.data, a.images)
+
+    local, head = cut_local(whole), cut_head(whole)
+    small_local = quantised(local, blocks, [])
+    run = ov.Core().compile_model(small_local, "CPU", {"INFERENCE_PRECISION_HINT": "f32"})
+    features = [np.array(run([b])[FEATURES]) for b in blocks[::2]]
+    small_head = quantised(head, features, tail_nodes(head))
+
+    top = feature_range(small_local)
+    integer_input(small_local)
+    integer_features(small_local)
+    head_input(small_head, top)
+    float_features(local)
+    head_input(head, None)
+    save(local, a.out / "hfnet.xml")
+    save(head, a.out / "hfnet_global.xml")
+    save(small_local, a.out / "hfnet_int8.xml")
+    save(small_head, a.out / "hfnet_global_int8.xml")
 
 
 if __name__ == "__main__":

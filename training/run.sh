@@ -42,5 +42,6 @@ $train -m training.train_global --data "$data" --local "$local_run/last.pt" --ru
   --photos "$photos" --semantic-steps "$semantic" --place-steps "$places"
 $train -m training.export "$global_run/last.pt" "$runs/hfnet.onnx"
 $deploy -m training.quantise "$runs/hfnet.onnx" --data "$data" --out "$out"
+cp "$runs/hfnet.onnx" "$out/hfnet.onnx"
 $deploy -m training.manifest "$out" --run "$(basename "$local_run")" --checkpoint-step "$steps"
 $deploy -m training.evaluate "$out/hfnet.xml" "$out/hfnet_int8.xml" --data "$data" --out "$runs/evaluation.json"

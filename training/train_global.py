@@ -31,6 +31,7 @@ def arguments() -> argparse.Namespace:
     p.add_argument("--local", type=Path, required=True, help="checkpoint of the local part")
     p.add_argument("--run", type=Path, required=True)
     p.add_argument("--head", type=Path, help="checkpoint to start the head from")
+    p.add_argument("--trunk", type=Path, help="checkpoint whose head's first convolutions to start from")
     p.add_argument("--photos", type=int, default=1200)
     p.add_argument("--variants", type=int, default=2, help="views of a photo; frames get twice as many")
     p.add_argument("--semantic-steps", type=int, default=1000)
@@ -221,6 +222,13 @@ def load_data(args: argparse.Namespace, encoder: Encoder, local_step: int) -> tu
     return made[0], made[1], places_of(frames)
 
 
+def start_trunk(head: GlobalHead, checkpoint: Path) -> None:
+    """Takes what fits of another head, which may be deeper; clusters and reduction are found anew."""
+    own, saved = head.state_dict(), torch.load(checkpoint, weights_only=True)["head"]
+    fitting = {k for k in own if k in saved and not k.startswith("vlad.") and saved[k].shape == own[k].shape}
+    head.load_state_dict(own | {k: saved[k].to(own[k].dtype) for k in fitting})
+
+
 def save(args: argparse.Namespace, local: dict, head: GlobalHead) -> None:
     """A checkpoint of the whole network: the local part as it was, and the head."""
     state = {k: v for k, v in local.items() if k != "optimiser"}
@@ -240,6 +248,8 @@ def main() -> None:
     trainer = GlobalTrainer(args, *load_data(args, Encoder(local), local["step"]))
     if args.head:
         trainer.head.load_state_dict(torch.load(args.head, weights_only=True)["head"])
+    elif args.trunk:
+        start_trunk(trainer.head, args.trunk)
     trainer.semantic(args.semantic_steps)
     if not args.head:
         trainer.start_vlad()
