@@ -18,6 +18,7 @@
 #include "io/image_file.h"
 #include "io/sequence_reader.h"
 #include "large_map.h"
+#include "synthetic_factors.h"
 #include "trial.h"
 
 namespace {
@@ -31,7 +32,9 @@ struct Settings {
   std::string features = "hfnet";
   std::string csv;
   std::string cache;
-  std::vector<std::string> parts = {"redkitchen", "hololens", "time"};
+  std::vector<std::string> parts = {"redkitchen", "hololens", "time", "synthetic"};
+  double synthetic_fps = 5.0;
+  int every_photo = 1;
   int every_foreign = 3;  // of the recordings of other places every n-th frame is asked for
   RelocalizationOptions options;
 };
@@ -122,9 +125,9 @@ void ask_elsewhere(const Settings& settings, const Split& split, MapUnderTest& m
   }
   std::sort(photos.begin(), photos.end());
   Row row{split.name + ": photos of other places", split.right_distance, 5.0, {}};
-  for (const std::string& path : photos) {
+  for (std::size_t i = 0; i < photos.size(); i += static_cast<std::size_t>(settings.every_photo)) {
     RgbdImage image;
-    image.color = read_color_image(path);
+    image.color = read_color_image(photos[i]);
     row.outcomes.push_back(locate(map, relocalizer, {image, std::nullopt, SE3()}));
   }
   finish_row(row, settings);
@@ -178,12 +181,22 @@ void measure_time(const Settings& settings) {
   finish_row(row, settings);
 }
 
+void measure_synthetic(const Settings& settings) {
+  SyntheticTrial trial;
+  trial.make_extractor = [&] { return make_features(settings); };
+  trial.options = settings.options;
+  trial.fps = settings.synthetic_fps;
+  fmt::print("\n");
+  measure_synthetic_factors(trial);
+}
+
 int run(const Settings& settings) {
-  print_heading();
+  if (settings.parts != std::vector<std::string>{"synthetic"}) print_heading();
   for (const std::string& part : settings.parts) {
     if (part == "redkitchen") measure_split(settings, redkitchen());
     if (part == "hololens") measure_split(settings, hololens());
     if (part == "time") measure_time(settings);
+    if (part == "synthetic") measure_synthetic(settings);
   }
   return 0;
 }
@@ -199,9 +212,16 @@ int main(int argc, char** argv) {
   app.add_option("--csv", settings.csv, "File that every single outcome is appended to");
   app.add_option("--cache", settings.cache,
                  "Folder that keeps features, so that a second run need not extract them");
-  app.add_option("--parts", settings.parts, "redkitchen, hololens, time")->delimiter(',');
+  app.add_option("--parts", settings.parts, "redkitchen, hololens, time, synthetic")
+      ->delimiter(',');
   app.add_option("--every-foreign", settings.every_foreign,
                  "Ask for every n-th frame of recordings of other places")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--every-photo", settings.every_photo, "Ask for every n-th photo")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--synthetic-fps", settings.synthetic_fps, "Frame rate in the synthetic room")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);

@@ -6,9 +6,9 @@ namespace dxslam {
 
 struct RelocalizationReport;
 
-/// Probability that a found pose is right, from what it rests on: points matched without knowing
-/// the pose, the share of the points in view that were found, and their spread. A logistic model;
-/// docs/relocalization.md says what it was fitted to.
+/// Probability that a found pose is right, from what it rests on: the points matched without
+/// knowing the pose and the points found around their projections. A logistic model of the
+/// logarithms of both; docs/relocalization.md says what it was fitted to.
 double relocalization_confidence(const RelocalizationReport& report);
 
 }  // namespace dxslam

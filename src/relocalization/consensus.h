@@ -10,8 +10,8 @@ namespace dxslam {
 
 struct ConsensusOptions {
   int frames = 3;
-  int min_matched = 11;
-  int min_inliers = 18;
+  int min_matched = 10;
+  int min_inliers = 15;
   double max_gap = 1.0;
   double max_speed = 1.5;
   double max_turn = 120.0;

@@ -10,11 +10,11 @@ namespace dxslam {
 
 /// What a pose must show to be believed (docs/relocalization.md has the calibration).
 struct AcceptanceOptions {
-  int min_matched = 15;
-  int min_inliers = 25;
-  double min_ratio = 0.02;
+  int min_matched = 13;
+  int min_inliers = 22;
+  double min_ratio = 0.015;
   double min_spread = 0.03;
-  double min_confidence = 0.5;
+  double min_confidence = 0.9;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
