@@ -113,7 +113,10 @@ MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
   for (const StoredLoopEdge& loop : loops) {
     const Map::Anchor a = map.anchor_of(loop.a);
     const Map::Anchor b = map.anchor_of(loop.b);
-    if (a.keyframe == b.keyframe) continue;
+    if (a.keyframe == b.keyframe ||
+        map.keyframe(a.keyframe).component != map.keyframe(b.keyframe).component) {
+      continue;
+    }
     snapshot.loops.push_back(
         {number_of(ids, a.keyframe), number_of(ids, b.keyframe),
          a.anchor_from_camera * loop.a_from_b * b.anchor_from_camera.inverse()});
@@ -129,6 +132,8 @@ void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFil
   require(
       snapshot.thumbnails.empty() || snapshot.thumbnails.size() == snapshot.parts.keyframes.size(),
       "there must be one thumbnail a keyframe, or none at all");
+  snapshot.header.camera.validate(path);
+  static_cast<void>(Map(snapshot.parts));  // throws for what could not be loaded again
   const DescriptorTraits& traits = snapshot.header.traits;
   const DescriptorCoding floats =
       options.exact_descriptors ? DescriptorCoding::kFloat32 : DescriptorCoding::kInt8;

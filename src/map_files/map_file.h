@@ -41,7 +41,8 @@ struct MapSnapshot {
 
 /// Copies the map with its ids numbered anew (take_apart). `loops` and `thumbnails` are by the ids
 /// of `map`; a loop edge whose keyframe was removed goes to that keyframe's anchor, and is dropped
-/// where both ends have become one; `thumbnails` may be shorter than the ids go.
+/// where both ends have become one or are of different components; `thumbnails` may be shorter than
+/// the ids go.
 MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
                           const std::vector<StoredLoopEdge>& loops = {},
                           const std::vector<std::string>& thumbnails = {});
@@ -52,9 +53,9 @@ struct MapFileOptions {
 };
 
 /// Writes the file whole or not at all; temporary files that processes left when they were killed
-/// while saving to the same path are removed. Throws InputError if it cannot be written,
-/// ContractError if the frames do not fit the header's traits or each other, or hold values that
-/// are not finite.
+/// while saving to the same path are removed. Throws InputError if it cannot be written, and
+/// ContractError, leaving the old file, for what could not be loaded again: relations that do not
+/// hold, frames that do not fit the header's traits or each other, numbers that are not finite.
 void save_map(const std::string& path, const MapSnapshot& snapshot,
               const MapFileOptions& options = {});
 

@@ -77,7 +77,7 @@ TEST(MapFile, MovesLoopsOfRemovedKeyframesToTheirAnchors) {
   ASSERT_EQ(anchor.keyframe, 1U);
   const SE3 a_from_b(so3_exp({0.1, 0, 0}), {1, 2, 3});
   const MapSnapshot snapshot =
-      take_snapshot(sample_header(), map, {{4, 2, a_from_b}, {1, 2, SE3()}});
+      take_snapshot(sample_header(), map, {{4, 2, a_from_b}, {1, 2, SE3()}, {1, 6, SE3()}});
   ASSERT_EQ(snapshot.loops.size(), 1U);
   EXPECT_EQ(snapshot.loops[0].a, 3U);
   EXPECT_EQ(snapshot.loops[0].b, 1U);
@@ -104,6 +104,9 @@ TEST(MapFile, DoesNotSaveWhatCouldNotBeLoaded) {
   expect_refused([](Frame& f) { f.global.resize(5); });
   expect_refused([](Frame& f) { f.descriptors.convertTo(f.descriptors, CV_8U); });
   MapSnapshot snapshot = sample_snapshot();
+  snapshot.parts.points[3].observations[0].keypoint = 100000;
+  EXPECT_THROW(save_map(folder / "m", snapshot), ContractError);
+  snapshot = sample_snapshot();
   snapshot.thumbnails.pop_back();
   EXPECT_THROW(save_map(folder / "m", snapshot), ContractError);
 }
@@ -165,6 +168,38 @@ TEST(MapFile, RefusesWhatIsNoFile) {
   folder.write("trajectory.txt", "1.0 0 0 0 0 0 0 1\n");
   expect_input_error([&] { load_map(folder / "trajectory.txt"); }, {"is no dxslam map"});
   expect_input_error([&] { save_map(folder / "no/m", sample_snapshot()); }, {"cannot be written"});
+}
+
+constexpr std::size_t kV1Keyframes = 5;
+constexpr std::size_t kV1Points = 39;
+constexpr double kV1X = 0.16;
+constexpr float kV1Descriptor = -0.35772026F;
+constexpr float kV1Pixel = 253.69647F;
+constexpr double kV1Z = 4.481328520998917;
+
+// A file of the first version, saved on 2026-11-22: later programs must read it.
+TEST(MapFile, ReadsTheFirstVersion) {
+  const StoredMap stored = load_map(DXSLAM_SOURCE_DIR "/tests/data/map_v1.dxmap");
+  EXPECT_EQ(stored.header.extractor, "sample");
+  EXPECT_EQ(stored.header.model_hash, std::string(64, 'a'));
+  EXPECT_EQ(stored.header.traits.dimension, 32);
+  EXPECT_EQ(stored.header.camera.cx, 319.5);
+  ASSERT_EQ(stored.map.keyframe_count(), kV1Keyframes);
+  ASSERT_EQ(stored.map.point_count(), kV1Points);
+  EXPECT_EQ(stored.map.component_count(), 2U);
+  expect_consistent(stored.map);
+  const Keyframe& k = stored.map.keyframe(1);
+  EXPECT_EQ(k.frame->index, 1);
+  EXPECT_EQ(k.frame->stamp, 1.0 / 30.0);
+  EXPECT_NEAR(k.world_from_camera.translation().x(), kV1X, 1e-12);
+  EXPECT_NEAR(cv::norm(k.frame->descriptors.row(0)), 1.0, 1e-5);
+  EXPECT_NEAR(k.frame->descriptors.at<float>(0, 0), kV1Descriptor, 1e-6);
+  EXPECT_EQ(k.frame->pixels[0].x(), kV1Pixel);
+  EXPECT_NEAR(k.frame->global[1], 0.8, 0.01);
+  EXPECT_NEAR(stored.map.point(7).position.z(), kV1Z, 1e-12);
+  ASSERT_EQ(stored.loops.size(), 1U);
+  EXPECT_NEAR(stored.loops[0].a_from_b.translation().z(), 2.0, 1e-12);
+  EXPECT_EQ(stored.thumbnails[0], "jpeg");
 }
 
 TEST(MapFile, ListsItsSections) {
