@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/error.h"
@@ -127,10 +128,13 @@ Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame,
   if (state_ == TrackingState::kTracking) {
     if (OptionalEstimate estimate = track_by_prediction(frame, grid)) return estimate;
   }
-  if (OptionalEstimate estimate = track_by_descriptors(frame, last_)) return estimate;
+  OptionalEstimate quick = track_by_descriptors(frame, last_, options_.quick_keypoints);
+  if (quick && static_cast<int>(quick->known.size()) >= options_.min_quick_inliers) return quick;
+  const int all = std::numeric_limits<int>::max();
+  if (OptionalEstimate estimate = track_by_descriptors(frame, last_, all)) return estimate;
   const LastFrame reference{local_->reference_frame, local_->world_from_reference,
                             local_->reference_points};
-  if (OptionalEstimate estimate = track_by_descriptors(frame, reference)) return estimate;
+  if (OptionalEstimate estimate = track_by_descriptors(frame, reference, all)) return estimate;
   return track_whole_local_map(frame);
 }
 
@@ -167,16 +171,20 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame,
   return estimate;
 }
 
-Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame,
-                                                        const LastFrame& source) const {
+Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame, const LastFrame& source,
+                                                        int keypoints) const {
   const std::vector<KnownPoint> source_known = known_points(source, *local_, camera_);
   std::vector<int> known_of(source.frame->size(), -1);
   for (std::size_t i = 0; i < source_known.size(); ++i) {
     known_of[static_cast<std::size_t>(source_known[i].keypoint)] = static_cast<int>(i);
   }
+  if (frame.descriptors.empty()) return std::nullopt;
+  // Keypoints come by falling score.
+  const cv::Mat theirs =
+      source.frame->descriptors.rowRange(0, std::min(keypoints, source.frame->descriptors.rows));
+  const cv::Mat ours = frame.descriptors.rowRange(0, std::min(keypoints, frame.descriptors.rows));
   std::vector<KnownPoint> known;
-  for (const Match& m :
-       match_mutual(source.frame->descriptors, frame.descriptors, traits_.max_distance, 0.95F)) {
+  for (const Match& m : match_mutual(theirs, ours, traits_.max_distance, 0.95F)) {
     const int index = known_of[static_cast<std::size_t>(m.a)];
     if (index < 0) continue;
     KnownPoint point = source_known[static_cast<std::size_t>(index)];

@@ -51,7 +51,9 @@ class Tracker {
   OptionalEstimate start(const Frame& frame) const;
   OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid) const;
   OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid) const;
-  OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source) const;
+  /// Matches the strongest `keypoints` of either frame.
+  OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source,
+                                        int keypoints) const;
   OptionalEstimate track_whole_local_map(const Frame& frame) const;
   OptionalEstimate estimate_by_pnp(const Frame& frame, std::vector<KnownPoint> known) const;
   OptionalEstimate track_local_map(const Frame& frame, const KeypointGrid& grid, Estimate estimate);

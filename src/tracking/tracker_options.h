@@ -36,6 +36,8 @@ struct TrackerOptions {
   double local_radius = 5.0;
   double ratio = 0.9;
   int min_predicted_matches = 80;
+  int quick_keypoints = 500;
+  int min_quick_inliers = 60;
   double max_view_angle = 70.0;
   double max_distance_ratio = 3.0;
   double depth_tolerance = 0.2;
@@ -56,6 +58,10 @@ struct TrackerOptions {
     visit("ratio", self.ratio, {0.1, 1}, "", "nearest to second nearest descriptor distance");
     visit("min_predicted_matches", self.min_predicted_matches, {6, 100000}, "matches",
           "with fewer the whole frame is matched by descriptors alone");
+    visit("quick_keypoints", self.quick_keypoints, {10, 100000}, "keypoints",
+          "the strongest of both frames, which are tried before all of them");
+    visit("min_quick_inliers", self.min_quick_inliers, {6, 100000}, "points",
+          "with fewer all keypoints are matched");
     visit("max_view_angle", self.max_view_angle, {1, 180}, "degrees",
           "angle to the mean direction from which a point was seen");
     visit("max_distance_ratio", self.max_distance_ratio, {1, 100}, "",
