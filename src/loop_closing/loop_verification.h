@@ -43,9 +43,9 @@ struct LoopVerificationOptions {
   double search_ratio = 0.95;
   int min_inliers = 30;
   double min_inlier_ratio = 0.25;
-  double min_found_share = 0.05;
+  double min_found_share = 0.06;
   int min_cells = 8;
-  double min_covered_share = 0.4;
+  double min_covered_share = 0.45;
   double depth_tolerance = 0.1;
   double min_depth_share = 0.6;
   int confirming_keyframes = 5;
