@@ -27,12 +27,12 @@ struct LoopsArguments {
 void print_table(const LoopExperiment& experiment, const std::vector<NamedCurve>& curves) {
   fmt::print("{} queries, {} of them with a true loop; {} places\n", experiment.queries.size(),
              curves.front().curve.queries_with_loop, experiment.places.size());
-  fmt::print("{:<22} {:>18} {:>18} {:>16}\n", "method", "recall at 100 %", "average precision",
+  fmt::print("{:<28} {:>18} {:>18} {:>16}\n", "method", "recall at 100 %", "average precision",
              "median query ms");
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<double> times;
     for (const LoopQuery& query : experiment.runs[i].queries) times.push_back(query.ms);
-    fmt::print("{:<22} {:>18.4f} {:>18.4f} {:>16.2f}\n", curves[i].name,
+    fmt::print("{:<28} {:>18.4f} {:>18.4f} {:>16.2f}\n", curves[i].name,
                curves[i].curve.recall_at_100_precision, curves[i].curve.average_precision,
                summarise(times).median);
   }

@@ -10,7 +10,8 @@
 namespace dxslam {
 namespace {
 
-constexpr double kFarthest = 2.0;  // of two unit vectors
+constexpr double kFarthest = 2.0;      // distance of two unit vectors
+constexpr double kHighestScore = 2.0;  // of two equal vectors of words
 
 void sort_by_confidence(std::vector<LoopCandidate>& candidates) {
   std::stable_sort(
@@ -105,6 +106,11 @@ std::vector<LoopCandidate> LoopDetector::rank(const BowVector& bow,
       candidates.end());
   for (LoopCandidate& c : candidates) c.confidence = kFarthest - c.global_distance;
   sort_by_confidence(candidates);
+  if (!method_.agree) return candidates;
+  for (LoopCandidate& c : candidates) {
+    const bool vetoed = c.global_distance > options_.max_distance;
+    c.confidence = vetoed ? c.bow_score - kHighestScore : c.bow_score;
+  }
   return candidates;
 }
 
@@ -125,8 +131,13 @@ LoopVerdict LoopDetector::judge(const LoopCandidate& candidate) const {
     const int least = method_.orb ? options_.min_inliers_orb : options_.min_inliers_hf;
     return candidate.inliers >= least ? LoopVerdict::kAccepted : LoopVerdict::kFewInliers;
   }
+  if (method_.agree) {
+    if (candidate.global_distance > options_.max_distance) return LoopVerdict::kFarGlobal;
+    return candidate.bow_score >= options_.min_score_global ? LoopVerdict::kAccepted
+                                                            : LoopVerdict::kLowScore;
+  }
   if (method_.global) {
-    const double most = method_.words ? options_.max_distance : options_.max_distance_global;
+    const double most = method_.words ? options_.max_distance_paper : options_.max_distance_global;
     return candidate.global_distance <= most ? LoopVerdict::kAccepted : LoopVerdict::kFarGlobal;
   }
   const double least = method_.orb ? options_.min_score_orb : options_.min_score_hf;

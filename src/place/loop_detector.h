@@ -43,8 +43,11 @@ using LoopVerifier = std::function<int(std::uint32_t id)>;
 /// Finds returns to known places from two levels of features (paper III.E), over plain ids: the
 /// caller says which places must not be found (covisible or recent ones).
 /// - orb-bow, hf-bow: the most similar place by words, if similar enough;
-/// - hf-bow-global: of the `candidates` most similar places by words the one with the nearest
-///   global descriptor, if near enough (the paper's method);
+/// - hf-bow-global-paper: of the `candidates` most similar places by words the one with the nearest
+///   global descriptor, if near enough (the paper to the letter);
+/// - hf-bow-global: the same place, if it is also similar enough by words: the nearest global
+///   descriptor picks, and both levels must agree. Its distance is only a veto, so that the
+///   threshold that decides carries over between scenes (docs/loops.md);
 /// - global-only: the place with the nearest global descriptor, if near enough;
 /// - ...+geometry: of the first `verified_candidates` of these the one that has most inliers, if
 ///   enough; scores and distances then only rank.

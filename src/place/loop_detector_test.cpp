@@ -29,8 +29,9 @@ double chord(double degrees) { return 2.0 * std::sin(0.5 * degrees * M_PI / 180.
 LoopOptions options_for(const std::string& method) {
   LoopOptions options;
   options.method = method;
-  options.min_score_orb = options.min_score_hf = 0.8;
-  options.max_distance = options.max_distance_global = 0.3;
+  options.candidates = 20;
+  options.min_score_orb = options.min_score_hf = options.min_score_global = 0.8;
+  options.max_distance = options.max_distance_paper = options.max_distance_global = 0.3;
   options.min_inliers_orb = options.min_inliers_hf = 30;
   return options;
 }
@@ -65,20 +66,35 @@ TEST(LoopDetector, TakesTheTopPlaceByWords) {
 }
 
 TEST(LoopDetector, TakesTheNearestGlobalDescriptorOfThoseSimilarByWords) {
-  LoopDetector detector = make_detector(options_for("hf-bow-global"));
-  const auto candidates = query(detector);
-  ASSERT_EQ(candidates.size(), 2U);  // not 12, which no word leads to
-  EXPECT_EQ(candidates[0].id, 11U);
-  EXPECT_NEAR(candidates[0].global_distance, chord(10), 1e-6);
-  EXPECT_TRUE(candidates[0].accepted());
-
-  LoopOptions only_the_first = options_for("hf-bow-global");
+  for (const char* method : {"hf-bow-global", "hf-bow-global-paper"}) {
+    LoopDetector detector = make_detector(options_for(method));
+    const auto candidates = query(detector);
+    ASSERT_EQ(candidates.size(), 2U);  // not 12, which no word leads to
+    EXPECT_EQ(candidates[0].id, 11U);
+    EXPECT_NEAR(candidates[0].global_distance, chord(10), 1e-6);
+    EXPECT_TRUE(candidates[0].accepted());
+  }
+  LoopOptions only_the_first = options_for("hf-bow-global-paper");
   only_the_first.candidates = 1;
   LoopDetector narrow = make_detector(only_the_first);
   const auto one = query(narrow);
   ASSERT_EQ(one.size(), 1U);
   EXPECT_EQ(one[0].id, 10U);
   EXPECT_EQ(one[0].verdict, LoopVerdict::kFarGlobal);
+}
+
+TEST(LoopDetector, AsksBothLevelsToAgree) {
+  LoopOptions options = options_for("hf-bow-global");
+  LoopDetector agreed = make_detector(options);
+  EXPECT_NEAR(query(agreed)[0].confidence, 1.0, 1e-6);  // the score of words
+  options.min_score_global = 1.2;                       // place 11 has 1.0
+  LoopDetector words_too_few = make_detector(options);
+  EXPECT_EQ(query(words_too_few)[0].verdict, LoopVerdict::kLowScore);
+  options = options_for("hf-bow-global");
+  options.max_distance = 0.1;
+  LoopDetector too_far = make_detector(options);
+  EXPECT_EQ(query(too_far)[0].verdict, LoopVerdict::kFarGlobal);
+  EXPECT_LT(query(too_far)[0].confidence, 0.0);  // below all that are near enough
 }
 
 TEST(LoopDetector, NeedsNoWordsForGlobalOnly) {

@@ -14,15 +14,18 @@ namespace {
 constexpr const char* kGeometry = "+geometry";
 
 std::vector<LoopMethod> make_methods() {
-  std::vector<LoopMethod> methods(4);
+  std::vector<LoopMethod> methods(5);
   methods[0].name = "orb-bow";
   methods[0].orb = true;
   methods[1].name = "hf-bow";
   methods[2].name = "hf-bow-global";
   methods[2].global = true;
-  methods[3].name = "global-only";
-  methods[3].words = false;
+  methods[2].agree = true;
+  methods[3].name = "hf-bow-global-paper";
   methods[3].global = true;
+  methods[4].name = "global-only";
+  methods[4].words = false;
+  methods[4].global = true;
   const std::size_t plain = methods.size();
   for (std::size_t i = 0; i < plain; ++i) {
     LoopMethod method = methods[i];

@@ -14,11 +14,13 @@ namespace dxslam {
 /// anew and writes them here (docs/loops.md).
 struct LoopOptions {
   std::string method = "hf-bow-global";
-  int candidates = 20;
+  int candidates = 3;
   double min_score_orb = 0.5;        // calibrated
   double min_score_hf = 0.5;         // calibrated
-  double max_distance = 0.5;         // calibrated
-  double max_distance_global = 0.5;  // calibrated
+  double min_score_global = 0.5;     // calibrated
+  double max_distance = 1.3;         // calibrated
+  double max_distance_paper = 0.8;   // calibrated
+  double max_distance_global = 0.8;  // calibrated
   int min_inliers_orb = 20;          // calibrated
   int min_inliers_hf = 20;           // calibrated
   int verified_candidates = 3;
@@ -28,13 +30,18 @@ struct LoopOptions {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("method", self.method, "",
-          "orb-bow, hf-bow, hf-bow-global or global-only, each also with +geometry");
+          "orb-bow, hf-bow, hf-bow-global, hf-bow-global-paper or global-only, each also with "
+          "+geometry");
     visit("candidates", self.candidates, {1, 10000}, "places",
-          "most similar places by words whose global descriptors are compared (hf-bow-global)");
+          "most similar places by words whose global descriptors are compared (hf-bow-global...)");
     visit("min_score_orb", self.min_score_orb, {0, 2}, "", "least score of words (orb-bow)");
     visit("min_score_hf", self.min_score_hf, {0, 2}, "", "least score of words (hf-bow)");
+    visit("min_score_global", self.min_score_global, {0, 2}, "",
+          "least score of words of the place with the nearest global descriptor (hf-bow-global)");
     visit("max_distance", self.max_distance, {0, 2}, "",
-          "farthest global descriptor, L2 (hf-bow-global)");
+          "farthest global descriptor, L2, whatever the words say (hf-bow-global)");
+    visit("max_distance_paper", self.max_distance_paper, {0, 2}, "",
+          "farthest global descriptor, L2 (hf-bow-global-paper)");
     visit("max_distance_global", self.max_distance_global, {0, 2}, "",
           "farthest global descriptor, L2 (global-only)");
     visit("min_inliers_orb", self.min_inliers_orb, {8, 10000}, "matches",
@@ -54,7 +61,8 @@ struct LoopOptions {
 struct LoopMethod {
   bool orb = false;       ///< words of ORB, else of the network's descriptors
   bool words = true;      ///< candidates by words, else by global descriptor
-  bool global = false;    ///< the nearest global descriptor decides, else the score of words
+  bool global = false;    ///< the nearest global descriptor wins, else the score of words
+  bool agree = false;     ///< both levels must agree on the winner, else only what made it win
   bool geometry = false;  ///< candidates are ranked and accepted by geometry
   std::string name;
 };
@@ -62,7 +70,7 @@ struct LoopMethod {
 /// Throws InputError, with the names that there are, for another name.
 LoopMethod parse_loop_method(const std::string& name);
 
-/// orb-bow, hf-bow, hf-bow-global and global-only, then each with +geometry.
+/// orb-bow, hf-bow, hf-bow-global, hf-bow-global-paper, global-only; then each with +geometry.
 const std::vector<std::string>& loop_method_names();
 
 }  // namespace dxslam
