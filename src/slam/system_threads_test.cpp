@@ -4,107 +4,15 @@
 // The system in threads against the same system in one: threads may add speed, not errors.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
-#include "map/point_scene.h"
 #include "slam/system.h"
+#include "slam/test_recording.h"
 
 namespace dxslam {
 namespace {
-
-constexpr int kFrames = 60;
-
-// There and back along the path of the scene.
-double place(int index) {
-  const double t = 2.0 * index / (kFrames - 1);
-  return t <= 1.0 ? t : 2.0 - t;
-}
-
-// A recording without images: the colour image holds the index of a frame, by which the extractor
-// finds the keypoints that belong to it.
-class Recording {
- public:
-  Recording() : scene_(1200) {
-    for (int i = 0; i < kFrames; ++i) add(i);
-  }
-
-  const Camera& camera() const { return scene_.camera(); }
-  DescriptorTraits traits() const {
-    DescriptorTraits traits = scene_.traits();
-    traits.global_dimension = 2;
-    return traits;
-  }
-  const std::vector<RgbdImage>& images() const { return images_; }
-  const Features& features(const cv::Mat& color) const {
-    std::int32_t index = 0;
-    std::memcpy(&index, color.data, sizeof(index));
-    return features_.at(static_cast<std::size_t>(index));
-  }
-
- private:
-  void add(int index) {
-    const FramePtr frame = scene_.frame(index, PointScene::pose(place(index)));
-    RgbdImage image;
-    image.index = index;
-    image.stamp = frame->stamp;
-    image.color.create(1, sizeof(std::int32_t), CV_8UC1);
-    const std::int32_t number = index;
-    std::memcpy(image.color.data, &number, sizeof(number));
-    image.depth = cv::Mat::zeros(camera().height, camera().width, CV_32FC1);
-    Features features;
-    for (std::size_t i = 0; i < frame->size(); ++i) {
-      const Eigen::Vector2f& p = frame->pixels[i];
-      features.keypoints.push_back({p.x(), p.y(), 1.0F, 1.0F});
-      // Every other keypoint is without a reading, and may be triangulated.
-      if (i % 2 == 0) depth_at(image.depth, p) = frame->depths[i];
-    }
-    features.descriptors = frame->descriptors.clone();
-    features.encoder.create(1, 1, CV_32FC1);
-    features.encoder.at<float>(0, 0) = static_cast<float>(place(index));
-    images_.push_back(image);
-    features_.push_back(features);
-  }
-  static float& depth_at(cv::Mat& depth, const Eigen::Vector2f& p) {
-    const auto within = [](float x, int size) {
-      return std::clamp(static_cast<int>(std::lround(x)), 0, size - 1);
-    };
-    return depth.at<float>(within(p.y(), depth.rows), within(p.x(), depth.cols));
-  }
-
-  PointScene scene_;
-  std::vector<RgbdImage> images_;
-  std::vector<Features> features_;
-};
-
-const Recording& recording() {
-  static const Recording made;
-  return made;
-}
-
-class RecordingExtractor : public FeatureExtractor {
- public:
-  explicit RecordingExtractor(int broken = -1) : broken_(broken) {}
-  const std::string& name() const override { return name_; }
-  const DescriptorTraits& traits() const override { return traits_; }
-  Features extract(const cv::Mat& image, bool) override {
-    if (count_++ == broken_) throw std::runtime_error("broken image");
-    return recording().features(image);
-  }
-  std::vector<float> global_of(const cv::Mat& encoder) override {
-    const float angle = encoder.at<float>(0, 0);
-    return {std::cos(angle), std::sin(angle)};
-  }
-
- private:
-  const std::string name_ = "recording";
-  const DescriptorTraits traits_ = recording().traits();
-  const int broken_;
-  int count_ = 0;
-};
 
 SystemOptions options(bool deterministic) {
   SystemOptions options;

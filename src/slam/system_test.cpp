@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "slam/system.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "map/map_parts.h"
+#include "slam/test_recording.h"
+
+namespace dxslam {
+namespace {
+
+SystemOptions deterministic() {
+  SystemOptions options;
+  options.features = "recording";
+  options.deterministic = true;
+  options.loop_detection.max_distance_global = 0.2;
+  return options;
+}
+
+std::unique_ptr<System> make_system(const SystemOptions& options) {
+  return std::make_unique<System>(recording().camera(), std::make_unique<RecordingExtractor>(),
+                                  options);
+}
+
+// The images of the recording from `first` on, with later stamps where it is not the first round.
+void feed(System& system, int first, int last, double later = 0.0) {
+  for (int i = first; i < last; ++i) {
+    RgbdImage image = recording().images()[static_cast<std::size_t>(i)];
+    image.stamp += later;
+    system.process(image);
+  }
+}
+
+// A map of the whole recording.
+Map known_map() {
+  const auto system = make_system(deterministic());
+  feed(*system, 0, kFrames);
+  system->finish();
+  return Map(take_apart(system->map()));
+}
+
+// Largest distance to the true path.
+double worst_error(const Trajectory& trajectory, double later = 0.0) {
+  double worst = 0.0;
+  for (const StampedPose& pose : trajectory) {
+    const int index = static_cast<int>(std::lround(30.0 * (pose.stamp - later)));
+    worst = std::max(worst,
+                     translation_distance(pose.world_from_camera, PointScene::pose(place(index))));
+  }
+  return worst;
+}
+
+TEST(System, LocalizesInALoadedMapAndLeavesItAsItIs) {
+  SystemOptions options = deterministic();
+  options.mode = "localization";
+  const auto system = make_system(options);
+  Map map = known_map();
+  const std::size_t keyframes = map.keyframe_count();
+  const std::size_t points = map.point_count();
+  system->load_map(std::move(map), {});
+  feed(*system, 17, kFrames, 100.0);
+  system->finish();
+  const Trajectory trajectory = system->trajectory();
+  EXPECT_EQ(trajectory.size(), static_cast<std::size_t>(kFrames - 17));
+  EXPECT_LT(worst_error(trajectory, 100.0), 0.02);
+  EXPECT_EQ(system->map().keyframe_count(), keyframes);
+  EXPECT_EQ(system->map().point_count(), points);
+}
+
+TEST(System, GoesOnWithALoadedMap) {
+  const auto system = make_system(deterministic());
+  Map map = known_map();
+  const std::size_t keyframes = map.keyframe_count();
+  system->load_map(std::move(map), {});
+  feed(*system, 20, kFrames, 100.0);
+  system->finish();
+  EXPECT_EQ(system->components().size(), 1U);
+  EXPECT_EQ(system->trajectory().size(), static_cast<std::size_t>(kFrames - 20));
+  EXPECT_LT(worst_error(system->trajectory(), 100.0), 0.02);
+  // What is known already is not mapped a second time.
+  EXPECT_LT(system->map().keyframe_count(), 2 * keyframes);
+}
+
+TEST(System, LocalizationNeedsAMap) {
+  SystemOptions options = deterministic();
+  options.mode = "localization";
+  const auto system = make_system(options);
+  EXPECT_THROW(feed(*system, 0, 1), InputError);
+  options.mode = "both";
+  EXPECT_THROW(make_system(options), InputError);
+}
+
+TEST(System, BeginsANewMapWhenItCannotFindItselfAndJoinsThemLater) {
+  SystemOptions options = deterministic();
+  options.new_map_after = 3;
+  options.relocalization.acceptance.min_inliers = 100000;  // never satisfied
+  options.close_loops = false;
+  const auto apart = make_system(options);
+  feed(*apart, 0, 30);
+  apart->begin_sequence();
+  feed(*apart, 0, kFrames, 100.0);
+  apart->finish();
+  ASSERT_EQ(apart->components().size(), 2U);
+  EXPECT_EQ(apart->components()[0].component, 1U);  // where most frames were tracked
+  EXPECT_EQ(apart->components()[0].frames, static_cast<std::size_t>(kFrames - 3));
+  EXPECT_EQ(apart->components()[1].frames, 30U);
+  EXPECT_EQ(apart->trajectory(0).size(), 30U);
+
+  options.close_loops = true;
+  const auto together = make_system(options);
+  feed(*together, 0, 30);
+  together->begin_sequence();
+  feed(*together, 0, kFrames, 100.0);
+  together->finish();
+  ASSERT_EQ(together->components().size(), 1U);
+  EXPECT_EQ(together->trajectory().size(), static_cast<std::size_t>(30 + kFrames - 3));
+  bool joined = false;
+  for (const LoopRecord& record : together->backend().loop_records()) {
+    joined = joined || (record.accepted && record.effect == "join");
+  }
+  EXPECT_TRUE(joined);
+  // Both recordings in one world: that of the first camera of the first.
+  Trajectory first;
+  Trajectory second;
+  for (const StampedPose& pose : together->trajectory()) {
+    (pose.stamp < 50.0 ? first : second).push_back(pose);
+  }
+  EXPECT_LT(worst_error(first), 0.02);
+  EXPECT_LT(worst_error(second, 100.0), 0.02);
+}
+
+TEST(System, ReportsTheMapSizeOfEachRecordingAndSavesAsItGoes) {
+  const auto system = make_system(deterministic());
+  int saves = 0;
+  std::size_t largest = 0;
+  system->set_autosave(2, [&](const Map& map, const std::vector<LoopEdge>&) {
+    ++saves;
+    largest = std::max(largest, map.keyframe_count());
+  });
+  feed(*system, 0, kFrames);
+  system->begin_sequence();
+  feed(*system, 0, kFrames, 100.0);
+  system->finish();
+  ASSERT_EQ(system->map_sizes().size(), 2U);
+  EXPECT_GT(system->map_sizes()[0].keyframes, 4U);
+  EXPECT_LT(system->map_sizes()[1].keyframes, 2 * system->map_sizes()[0].keyframes);
+  EXPECT_EQ(saves, system->mapping_totals().keyframes / 2);
+  EXPECT_GT(largest, 2U);
+  EXPECT_EQ(system->trajectory().size(), static_cast<std::size_t>(2 * kFrames));
+}
+
+}  // namespace
+}  // namespace dxslam
