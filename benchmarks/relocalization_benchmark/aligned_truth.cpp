@@ -24,8 +24,30 @@ Deviation deviation(const SE3& pose, const SE3& truth) {
           rotation_angle(pose, truth) * 180.0 / std::numbers::pi};
 }
 
-MapAlignment align_positions(const std::vector<PosePair>& pairs) {
-  return {align(pairs, Alignment::kSe3).rigid(), SE3()};
+MapAlignment align_poses(const std::vector<PosePair>& pairs, double unit_distance,
+                         double unit_angle_degrees) {
+  const double by_distance = 1.0 / (unit_distance * unit_distance);
+  const double radians = unit_angle_degrees * std::numbers::pi / 180.0;
+  const double by_angle = 1.0 / (radians * radians);
+  SE3 truth_from_map = align(pairs, Alignment::kSe3).rigid();
+  for (int round = 0; round < kRounds; ++round) {  // Gauss-Newton on a left perturbation
+    Matrix6d hessian = Matrix6d::Zero();
+    Vector6d gradient = Vector6d::Zero();
+    for (const PosePair& pair : pairs) {
+      const SE3 pose = truth_from_map * pair.estimate.world_from_camera;
+      const SE3& truth = pair.truth.world_from_camera;
+      Eigen::Matrix<double, 3, 6> shift;
+      shift << Eigen::Matrix3d::Identity(), -skew(pose.translation());
+      hessian += by_distance * shift.transpose() * shift;
+      gradient += by_distance * shift.transpose() * (pose.translation() - truth.translation());
+      hessian.bottomRightCorner<3, 3>().diagonal().array() += by_angle;
+      gradient.tail<3>() += by_angle * so3_log(pose.rotation() * truth.rotation().conjugate());
+    }
+    const Vector6d step = hessian.ldlt().solve(-gradient);
+    truth_from_map = SE3::exp(step) * truth_from_map;
+    if (step.norm() < 1e-10) break;
+  }
+  return {truth_from_map, SE3()};
 }
 
 MapAlignment align_with_camera_offset(const std::vector<PosePair>& pairs) {

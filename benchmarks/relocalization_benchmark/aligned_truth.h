@@ -29,10 +29,12 @@ struct MapAlignment {
   SE3 aligned(const SE3& pose) const { return truth_from_map * pose * camera_from_true; }
 };
 
-/// Rigid, fitted to positions alone: the alignment of the ATE.
-MapAlignment align_positions(const std::vector<PosePair>& pairs);
+/// Rigid, fitted to positions and rotations, in least squares, each in units of what counts as
+/// right. Positions alone would leave a turn about a straight path open.
+MapAlignment align_poses(const std::vector<PosePair>& pairs, double unit_distance,
+                         double unit_angle_degrees);
 
-/// The same for a truth that belongs to another camera of the same device (7-Scenes: the poses are
+/// For a truth that belongs to another camera of the same device (7-Scenes: the poses are
 /// those of the depth camera, the images those of the colour camera): the fixed offset of the two
 /// is fitted as well, first its rotation to all rotations, then its translation to all positions.
 MapAlignment align_with_camera_offset(const std::vector<PosePair>& pairs);

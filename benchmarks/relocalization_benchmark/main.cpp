@@ -33,6 +33,7 @@ struct Settings {
   std::string csv;
   std::string cache;
   std::vector<std::string> parts = {"redkitchen", "hololens", "time", "synthetic"};
+  std::vector<std::string> scenes = {"room", "office"};
   double synthetic_fps = 5.0;
   int every_photo = 1;
   int every_foreign = 3;  // of the recordings of other places every n-th frame is asked for
@@ -151,7 +152,7 @@ void print_map(const Split& split, const MapUnderTest& map) {
 
 void measure_split(const Settings& settings, const Split& split) {
   const auto sequence = open_sequence(settings.shared + "/data/" + split.folder);
-  MapUnderTest map(*sequence, make_features(settings), split.in_map);
+  MapUnderTest map(*sequence, make_features(settings), split.in_map, split.right_distance);
   print_map(split, map);
   const Relocalizer relocalizer(map.camera(), map.extractor().traits(), settings.options);
   const std::vector<Query> queries = queries_of(*sequence, split, map);
@@ -169,7 +170,7 @@ void measure_split(const Settings& settings, const Split& split) {
 void measure_time(const Settings& settings) {
   const Split split = redkitchen();
   const auto sequence = open_sequence(settings.shared + "/data/" + split.folder);
-  MapUnderTest map(*sequence, make_features(settings), split.in_map);
+  MapUnderTest map(*sequence, make_features(settings), split.in_map, split.right_distance);
   const Map large = enlarge_map(map.map(), 1000);
   const GlobalIndex index = index_keyframes(large);
   const Relocalizer relocalizer(map.camera(), map.extractor().traits(), settings.options);
@@ -186,8 +187,10 @@ void measure_synthetic(const Settings& settings) {
   trial.make_extractor = [&] { return make_features(settings); };
   trial.options = settings.options;
   trial.fps = settings.synthetic_fps;
-  fmt::print("\n");
-  measure_synthetic_factors(trial);
+  for (const std::string& scene : settings.scenes) {
+    trial.scene = scene;
+    measure_synthetic_factors(trial);
+  }
 }
 
 int run(const Settings& settings) {
@@ -221,7 +224,9 @@ int main(int argc, char** argv) {
   app.add_option("--every-photo", settings.every_photo, "Ask for every n-th photo")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--synthetic-fps", settings.synthetic_fps, "Frame rate in the synthetic room")
+  app.add_option("--scenes", settings.scenes, "Synthetic scenes: room, office, corridor")
+      ->delimiter(',');
+  app.add_option("--synthetic-fps", settings.synthetic_fps, "Frame rate in the synthetic scenes")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);

@@ -88,10 +88,14 @@ void measure(const SyntheticTrial& trial, const Factor& factor, MapUnderTest& ma
 
 void measure_synthetic_factors(const SyntheticTrial& trial) {
   SyntheticOptions options;
+  options.scene = trial.scene;
   options.fps = trial.fps;
   SyntheticSequence sequence(options);
-  MapUnderTest map(sequence, trial.make_extractor(),
-                   [](std::size_t, const RgbdSequence&) { return true; });
+  MapUnderTest map(
+      sequence, trial.make_extractor(), [](std::size_t, const RgbdSequence&) { return true; },
+      0.05);
+  fmt::print("\n{}: map of {} keyframes, {:.1f} m walked\n\n", trial.scene,
+             map.map().keyframe_count(), sequence.path_length());
   fmt::print(
       "| factor | first pose after | off by | re-localization score | isolated images | accepted | "
       "right within 0.3 m | wrong by > 0.5 m |\n|---|---|---|---|---|---|---|---|\n");

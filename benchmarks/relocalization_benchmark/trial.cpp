@@ -57,7 +57,7 @@ double quantile(std::vector<double> values, double q) {
 }  // namespace
 
 MapUnderTest::MapUnderTest(RgbdSequence& sequence, std::unique_ptr<FeatureExtractor> extractor,
-                           const Picker& in_map)
+                           const Picker& in_map, double right_distance)
     : sequence_(sequence), extractor_(std::move(extractor)) {
   SystemOptions options;
   options.deterministic = true;  // the order of steps alone: the network computes as it is shipped
@@ -73,7 +73,7 @@ MapUnderTest::MapUnderTest(RgbdSequence& sequence, std::unique_ptr<FeatureExtrac
   system_->finish();
   index_ = index_keyframes(map());
   pairs_ = associate_or_throw(true_map_poses_, system_->trajectory(), 0.01);
-  alignment_ = align_positions(pairs_);
+  alignment_ = align_poses(pairs_, right_distance, 5.0);
   alignment_with_offset_ = align_with_camera_offset(pairs_);
 }
 

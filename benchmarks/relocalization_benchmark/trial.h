@@ -23,9 +23,10 @@ class MapUnderTest {
   using Picker = std::function<bool(std::size_t position, const RgbdSequence&)>;
 
   /// Runs the system, in deterministic order, over the frames that `in_map` picks.
+  /// `right_distance` is the unit of align_poses().
   /// Throws InputError if fewer than three frames were tracked.
   MapUnderTest(RgbdSequence& sequence, std::unique_ptr<FeatureExtractor> extractor,
-               const Picker& in_map);
+               const Picker& in_map, double right_distance);
 
   const Map& map() const { return system_->map(); }
   const GlobalIndex& index() const { return index_; }
@@ -63,7 +64,7 @@ struct Query {
 struct Outcome {
   RelocalizationReport report;
   bool elsewhere = false;
-  Deviation global;       ///< from the truth, by align_positions
+  Deviation global;       ///< from the truth, by align_poses
   Deviation with_offset;  ///< by align_with_camera_offset
   Deviation local;        ///< pose and truth both relative to the reference keyframe
   double ms = 0.0;        ///< processor time, without the features
