@@ -30,6 +30,9 @@ constexpr int kBranching = 10;
 constexpr int kDepth = 5;  // 10^5 words
 constexpr int kDimension = 64;
 constexpr int kDescriptors = 1000;  // of one image
+// Words drawn for an image: real ones with 1000 descriptors have 660 to 690 different words, as
+// many descriptors of one image are alike.
+constexpr int kDraws = 720;
 constexpr double kQueryLimitMs = 20.0;
 
 // Milliseconds that this thread has computed, or that have passed. They are the same on an idle
@@ -169,14 +172,14 @@ class ImageSource {
       total += share[i] = std::pow(rank + 30.0, -0.3) * std::exp(-rank / 5500.0);
     }
     for (double& s : share) {
-      const double in_image = 1.0 - std::pow(1.0 - s / total, kDescriptors);
+      const double in_image = 1.0 - std::pow(1.0 - s / total, kDraws);
       idf_.push_back(static_cast<float>(-std::log(in_image)));
     }
     word_ = std::discrete_distribution<WordId>(share.begin(), share.end());
   }
   BowVector image() {
     std::vector<std::pair<WordId, float>> entries;
-    for (int i = 0; i < kDescriptors; ++i) {
+    for (int i = 0; i < kDraws; ++i) {
       const WordId word = word_(random_);
       entries.emplace_back(word, idf_[word]);
     }

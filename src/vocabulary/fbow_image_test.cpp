@@ -253,7 +253,7 @@ TEST(FbowFile, SurvivesRandomDamage) {
       const auto at = std::uniform_int_distribution<std::size_t>(8, header - 1)(random);
       bytes[at] = static_cast<char>(std::uniform_int_distribution<int>(0, 255)(random));
     }
-    if (round % 7 == 0) bytes.resize(random() % bytes.size());
+    if (round % 7 == 0) bytes.resize(1 + random() % bytes.size());
     // A copy of exactly this size on the heap, so that reading on is noticed.
     const auto owner = std::make_shared<std::vector<float>>((bytes.size() + 3) / 4);
     std::memcpy(owner->data(), bytes.data(), bytes.size());
