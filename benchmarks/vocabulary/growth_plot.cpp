@@ -83,7 +83,7 @@ std::string draw_growth_svg(const std::vector<Growth>& experiments, double limit
     svg += draw_line(axes, experiments[i], &QueryTimes::median_ms, stroke);
     svg += draw_line(axes, experiments[i], &QueryTimes::p95_ms,
                      stroke + " stroke-dasharray=\"6 5\" opacity=\"0.6\"");
-    const double y = kTop + 14 + 20.0 * static_cast<double>(i);
+    const double y = kTop + 52 + 20.0 * static_cast<double>(i);
     svg += svg_dot(kLeft + 20, y - 4, color);
     svg += svg_text(kLeft + 34, y, svg_escaped(experiments[i].label), "class=\"label\"");
   }
