@@ -100,7 +100,8 @@ class Commands(Saved):
 
     def test_merged_maps_lie_side_by_side(self):
         out = self.folder / "merged.dxmap"
-        self.succeed(dxslam("map", "merge", self.first, self.second, self.first, "--out", out))
+        self.succeed(dxslam("map", "merge", self.first, self.second, self.first, "--apart", "--out",
+                            out))
         parts = [self.info(file) for file in (self.first, self.second, self.first)]
         merged = self.info(out)
         for key in ("keyframes", "points", "observations", "keypoints"):
@@ -109,11 +110,23 @@ class Commands(Saved):
                          [part["keyframes"] for part in parts])
         self.assertEqual(merged["components"][1], parts[1]["components"][0])
 
+    def test_maps_of_one_place_are_joined(self):
+        out = self.folder / "joined.dxmap"
+        text = self.succeed(dxslam("map", "merge", self.first, self.second, "--out", out))
+        self.assertRegex(text, "in 1 components")
+        parts, joined = [self.info(file) for file in (self.first, self.second)], self.info(out)
+        self.assertEqual(joined["keyframes"], sum(part["keyframes"] for part in parts))
+        self.assertLess(joined["points"], sum(part["points"] for part in parts))
+        self.assertGreater(joined["loops"], 0)
+        self.assertLess(joined["reprojection_error_px"]["median"], 1.5)
+        self.assertRegex(self.succeed(dxslam("map", "check", out)),
+                         "1 groups of covisible keyframes in 1 components")
+
     def test_merging_onto_itself_is_safe(self):
         out = self.folder / "self.dxmap"
         shutil.copy(self.second, out)
         before = self.info(out)
-        self.succeed(dxslam("map", "merge", out, out, "--out", out))
+        self.succeed(dxslam("map", "merge", out, out, "--apart", "--out", out))
         self.assertEqual(self.info(out)["keyframes"], 2 * before["keyframes"])
 
     def test_ply_holds_points_and_keyframes(self):
@@ -222,22 +235,22 @@ class Killed(Saved):
         expected = []
         for order in orders:
             start = time.monotonic()
-            self.succeed(dxslam("map", "merge", *order, "--out", out))
+            self.succeed(dxslam("map", "merge", *order, "--apart", "--out", out))
             duration = time.monotonic() - start
             expected.append(out.read_bytes())
         self.assertNotEqual(*expected)
         random.seed(1)
         found = [0, 0]
         for i in range(KILLS):
-            process = subprocess.Popen([PROGRAM, "map", "merge", *map(str, orders[i % 2]), "--out",
-                                        str(out)], stdout=subprocess.DEVNULL)
+            process = subprocess.Popen([PROGRAM, "map", "merge", *map(str, orders[i % 2]), "--apart",
+                                        "--out", str(out)], stdout=subprocess.DEVNULL)
             time.sleep(random.uniform(0.2, 1.1) * duration)
             process.send_signal(signal.SIGKILL)
             process.wait()
             found[expected.index(out.read_bytes())] += 1
         self.assertGreater(min(found), 0, "never killed before, or never after the file was new")
         self.succeed(dxslam("map", "check", out))
-        self.succeed(dxslam("map", "merge", *orders[0], "--out", out))
+        self.succeed(dxslam("map", "merge", *orders[0], "--apart", "--out", out))
         self.assertEqual(list(self.folder.glob("out.dxmap.*")), [], "left behind by the killed")
 
 

@@ -2,11 +2,13 @@
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/map_weld.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "map_files/map_export.h"
@@ -29,6 +31,7 @@ struct MapArguments {
   std::string colmap;
   std::string thumbnails;
   int component = -1;
+  bool apart = false;
 };
 
 Json camera_table(const Camera& c) {
@@ -177,10 +180,16 @@ void merge_command(const MapArguments& arguments) {
     merged = {both.header, Map(std::move(both.parts)), std::move(both.loops),
               std::move(both.thumbnails)};
   }
-  save_map(arguments.out,
-           take_snapshot(merged.header, merged.map, merged.loops, merged.thumbnails));
-  fmt::print("{} keyframes and {} points in {} components\n", merged.map.keyframe_count(),
-             merged.map.point_count(), merged.map.component_count());
+  const std::size_t loops = arguments.apart ? 0 : weld_components(merged);
+  const MapSnapshot snapshot =
+      take_snapshot(merged.header, merged.map, merged.loops, merged.thumbnails);
+  save_map(arguments.out, snapshot);
+  std::uint32_t components = 0;
+  for (const Keyframe& k : snapshot.parts.keyframes) {
+    components = std::max(components, k.component + 1);
+  }
+  fmt::print("{} keyframes and {} points in {} components; {} common places\n",
+             snapshot.parts.keyframes.size(), snapshot.parts.points.size(), components, loops);
 }
 
 CLI::App* add_action(CLI::App& map, const char* name, const char* about,
@@ -222,11 +231,11 @@ void add_map_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->option_text("N");
 
-  add_action(*map, "merge", "put maps into one file, each as components of their own",
-             merge_command, arguments, true)
-      ->add_option("--out", arguments->out, "the new map file")
-      ->option_text("FILE")
-      ->required();
+  CLI::App* merge =
+      add_action(*map, "merge", "put maps into one file and join them where they show one place",
+                 merge_command, arguments, true);
+  merge->add_flag("--apart", arguments->apart, "do not join them: components of their own");
+  merge->add_option("--out", arguments->out, "the new map file")->option_text("FILE")->required();
 }
 
 }  // namespace dxslam::apps
