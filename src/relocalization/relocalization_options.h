@@ -14,7 +14,7 @@ struct AcceptanceOptions {
   int min_inliers = 22;
   double min_ratio = 0.015;
   double min_spread = 0.03;
-  double min_confidence = 0.9;
+  double min_confidence = 0.95;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
