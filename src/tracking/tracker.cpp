@@ -126,10 +126,16 @@ Tracker::OptionalEstimate Tracker::start(const Frame& frame) const {
 Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame,
                                                     const KeypointGrid& grid) const {
   if (state_ == TrackingState::kTracking) {
-    if (OptionalEstimate estimate = track_by_prediction(frame, grid)) return estimate;
+    const SE3 predicted = last_.world_from_camera * last_from_current_;
+    if (OptionalEstimate estimate = track_by_prediction(frame, grid, predicted)) return estimate;
   }
-  OptionalEstimate quick = track_by_descriptors(frame, last_, options_.quick_keypoints);
-  if (quick && static_cast<int>(quick->known.size()) >= options_.min_quick_inliers) return quick;
+  const OptionalEstimate quick = track_by_descriptors(frame, last_, options_.quick_keypoints);
+  if (quick && static_cast<int>(quick->known.size()) >= options_.min_quick_inliers) {
+    if (OptionalEstimate estimate = track_by_prediction(frame, grid, quick->world_from_camera)) {
+      estimate->recovered = true;
+      return estimate;
+    }
+  }
   const int all = std::numeric_limits<int>::max();
   if (OptionalEstimate estimate = track_by_descriptors(frame, last_, all)) return estimate;
   const LastFrame reference{local_->reference_frame, local_->world_from_reference,
@@ -138,9 +144,8 @@ Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame,
   return track_whole_local_map(frame);
 }
 
-Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame,
-                                                       const KeypointGrid& grid) const {
-  const SE3 predicted = last_.world_from_camera * last_from_current_;
+Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,
+                                                       const SE3& predicted) const {
   const SE3 camera_from_world = predicted.inverse();
   const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
   std::vector<PixelPrediction> predictions;

@@ -50,7 +50,9 @@ class Tracker {
 
   OptionalEstimate start(const Frame& frame) const;
   OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid) const;
-  OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid) const;
+  /// Matches the last frame's points around the pixels at which a pose puts them.
+  OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid,
+                                       const SE3& predicted) const;
   /// Matches the strongest `keypoints` of either frame.
   OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source,
                                         int keypoints) const;
