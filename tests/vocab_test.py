@@ -87,33 +87,31 @@ class Vocab(unittest.TestCase):
         before, after = self.info(self.vocabulary), self.info(back)
         self.assertEqual([before[key] for key in kept], [after[key] for key in kept])
 
-    def interrupt(self, out, state):
-        """Stops a training on the way, however quick the machine is."""
-        for delay in (0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2, 3, 5):
-            process = subprocess.Popen(
-                [PROGRAM, "vocab", "train", self.recording, "--features", "orb", "--words", "500",
-                 "--out", out, "--checkpoint", state],
-                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    def interrupt(self, command):
+        """Stops a command on the way, however quick the machine is."""
+        for delay in (0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 5):
+            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             time.sleep(delay)
             process.send_signal(signal.SIGINT)
             process.communicate(timeout=60)
             if process.returncode == INTERRUPTED:
                 return True
-            out.unlink(missing_ok=True)  # it was too late; before, it was too early
-        return False
+        return False  # too early, and then too late
 
     def test_goes_on_after_an_interruption(self):
-        out, state = self.folder / "resumed.fbow", self.folder / "state"
-        if not self.interrupt(out, state):
+        whole, out, state = (self.folder / name for name in ("whole.fbow", "resumed.fbow", "state"))
+        command = ["vocab", "train", *[self.recording] * 6, "--features", "orb", "--words", 500]
+        resumable = [*command, "--out", out, "--checkpoint", state]
+        if not self.interrupt([PROGRAM, *map(str, resumable)]):
             self.skipTest("no training could be stopped between its start and its end")
-        self.assertFalse(out.exists())
         self.assertTrue(state.exists())
-        self.refuse(self.train(out, "--checkpoint", state, "--match-ratio", "0.8"), state)
-        done = self.train(out, "--checkpoint", state)
+        self.refuse(dxslam(*resumable, "--match-ratio", "0.8"), state)
+        done = dxslam(*resumable)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("going on at image", done.stdout)
         self.assertFalse(state.exists())
-        self.assertEqual(out.read_bytes(), self.vocabulary.read_bytes())
+        self.assertEqual(dxslam(*command, "--out", whole).returncode, 0)
+        self.assertEqual(out.read_bytes(), whole.read_bytes())
 
     def test_refuses_what_is_no_vocabulary(self):
         broken = self.folder / "broken.fbow"
