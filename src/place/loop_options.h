@@ -10,19 +10,19 @@
 namespace dxslam {
 
 /// How loops are found, and from when on they are believed. The thresholds marked "calibrated" are
-/// those of the shipped network and vocabularies; benchmarks/loops.py --calibrate measures them
+/// those of the shipped network and vocabularies; benchmarks/loops --calibrate measures them
 /// anew and writes them here (docs/loops.md).
 struct LoopOptions {
   std::string method = "hf-bow-global";
-  int candidates = 3;
-  double min_score_orb = 0.5;        // calibrated
-  double min_score_hf = 0.5;         // calibrated
-  double min_score_global = 0.5;     // calibrated
-  double max_distance = 1.3;         // calibrated
-  double max_distance_paper = 0.8;   // calibrated
-  double max_distance_global = 0.8;  // calibrated
-  int min_inliers_orb = 20;          // calibrated
-  int min_inliers_hf = 20;           // calibrated
+  int candidates = 5;
+  double min_score_orb = 0.405;        // calibrated
+  double min_score_hf = 0.336;         // calibrated
+  double min_score_global = 0.34;      // calibrated
+  double max_distance = 1.503;         // calibrated
+  double max_distance_paper = 0.843;   // calibrated
+  double max_distance_global = 0.836;  // calibrated
+  int min_inliers_orb = 20;            // calibrated
+  int min_inliers_hf = 20;             // calibrated
   int verified_candidates = 3;
   int consistent_queries = 1;
   int consistent_distance = 10;
