@@ -56,6 +56,7 @@ def main() -> None:
     p.add_argument("--out", type=Path)
     p.add_argument("--radius", type=int, default=Detection.radius, help="of non-maximum suppression, pixels")
     p.add_argument("--gain", type=float, default=0.12, help="of the low light")
+    p.add_argument("--no-places", action="store_true", help="leave place recognition out")
     a = p.parse_args()
     table: Table = {}
     places: dict[str, dict[str, float]] = {}
@@ -64,7 +65,7 @@ def main() -> None:
         extractor = Extractor(network, Detection(radius=a.radius))
         table[path.stem] = summarise(run_pairs(extractor, a.data / REDKITCHEN, a.gain))
         print(markdown({path.stem: table[path.stem]}), flush=True)
-        if network.has_global:
+        if network.has_global and not a.no_places:
             places[path.stem] = run_recall(network, a.data / REDKITCHEN, a.gain)
             print(path.stem, places[path.stem], flush=True)
     if a.out:

@@ -44,7 +44,7 @@ global_dimension: {length}
 detector:
   cell_size: 8
   score_threshold: 0.01
-  nms_radius: 3
+  nms_radius: 4
   nms_iterations: 0
   max_keypoints: 1000
   border: 8

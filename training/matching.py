@@ -25,7 +25,7 @@ class Detection:
     """Post-processing of the detector's output."""
 
     most: int = 1000
-    radius: int = 3
+    radius: int = 4
     threshold: float = 0.0
     border: int = 8
 

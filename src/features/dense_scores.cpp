@@ -37,28 +37,38 @@ constexpr int kLanes = 8;
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Flags = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-/// Whether a square of up to 7 x 7 pixels holds a better score than its centre, all of it at once:
-/// it has no branch that the processor would guess wrongly. Eight columns from the
-/// left edge of the square on must exist, and all its rows.
-DXSLAM_INLINE_KERNEL bool square_beats(const float* centre, std::ptrdiff_t stride, int radius) {
+/// Whether eight columns of a square, the first of them `first` pixels from the centre's, hold a
+/// better score than the centre: all rows at once, without branches to guess wrongly.
+DXSLAM_INLINE_KERNEL bool columns_beat(const float* centre, std::ptrdiff_t stride, int radius,
+                                       int first) {
   const float score = *centre;
-  const float* left = centre - radius;
-  Flags column = {0, 1, 2, 3, 4, 5, 6, 7};
+  const float* row_start = centre + first;
+  const Flags column = Flags{0, 1, 2, 3, 4, 5, 6, 7} + first;
   const Floats none = Floats{} - std::numeric_limits<float>::max();
   Floats row;
-  std::memcpy(&row, left, sizeof(row));
-  Floats earlier = column < radius ? row : none;  // these win ties
-  Floats later = column > radius ? row : none;
+  std::memcpy(&row, row_start, sizeof(row));
+  Floats earlier = column < 0 ? row : none;  // these win ties
+  Floats later = column > 0 ? row : none;
   for (int d = 1; d <= radius; ++d) {
-    std::memcpy(&row, left - d * stride, sizeof(row));
+    std::memcpy(&row, row_start - d * stride, sizeof(row));
     earlier = earlier > row ? earlier : row;
-    std::memcpy(&row, left + d * stride, sizeof(row));
+    std::memcpy(&row, row_start + d * stride, sizeof(row));
     later = later > row ? later : row;
   }
-  const Flags beaten = ((earlier >= score) | (later > score)) & (column <= 2 * radius);
+  const Flags beaten = ((earlier >= score) | (later > score)) & (column <= radius);
   std::uint64_t words[4];
   std::memcpy(words, &beaten, sizeof(words));
   return ((words[0] | words[1]) | (words[2] | words[3])) != 0;
+}
+
+/// Largest radius whose square columns_beat() covers in two goes.
+constexpr int kLargestRadius = kLanes - 1;
+
+/// Whether the square holds a better score. All its rows must exist, and eight columns from its
+/// left edge on.
+DXSLAM_INLINE_KERNEL bool square_beats(const float* centre, std::ptrdiff_t stride, int radius) {
+  if (columns_beat(centre, stride, radius, -radius)) return true;
+  return 2 * radius >= kLanes && columns_beat(centre, stride, radius, radius - (kLanes - 1));
 }
 
 /// Position of the next mark from `from` on, or the size.
@@ -112,8 +122,8 @@ DXSLAM_INLINE_KERNEL void find_in_row(const TensorView& scores, float threshold,
   const bool rows_exist = y >= radius && y + radius < scores.height;
   for (int i = next_mark(marks, 0); i < width; i = next_mark(marks, i + 1)) {
     const int x = area.x_begin + i;
-    const bool at_once =
-        rows_exist && 2 * radius < kLanes && x >= radius && x - radius + kLanes <= scores.width;
+    const bool at_once = rows_exist && radius <= kLargestRadius && x >= radius &&
+                         x + radius < scores.width && x - radius + kLanes <= scores.width;
     const bool best = at_once ? !square_beats(row + i, scores.row_stride, radius)
                               : is_maximum(scores, radius, x, y);
     if (best) candidates.push_back({x, y, row[i]});

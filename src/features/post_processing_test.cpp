@@ -356,7 +356,7 @@ TEST(DenseScores, MaximaEqualSuppressionOfAllCandidates) {
     for (float& v : values) v = std::round(v * steps) / steps;
     const auto map = TensorView::nchw(values.data(), 1, height, width);
     const PixelArea area{1, 3, 45, 39};
-    for (const int radius : {1, 2, 3, 4}) {
+    for (const int radius : {1, 2, 3, 4, 8}) {
       NonMaximumSuppression suppression;
       std::vector<Candidate> all;
       find_candidates(map, 0.3F, all);
