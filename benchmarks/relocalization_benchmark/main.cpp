@@ -186,6 +186,7 @@ void measure_synthetic(const Settings& settings) {
   SyntheticTrial trial;
   trial.make_extractor = [&] { return make_features(settings); };
   trial.options = settings.options;
+  trial.csv = settings.csv;
   trial.fps = settings.synthetic_fps;
   for (const std::string& scene : settings.scenes) {
     trial.scene = scene;

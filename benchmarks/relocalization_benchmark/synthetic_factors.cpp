@@ -67,16 +67,19 @@ void measure(const SyntheticTrial& trial, const Factor& factor, MapUnderTest& ma
   SyntheticSequence sequence(factor.options);
   const Relocalizer relocalizer(map.camera(), map.extractor().traits(), trial.options);
   const std::optional<FirstPose> first = first_pose(trial, map, relocalizer, sequence);
-  int asked = 0, accepted = 0, right = 0, wrong = 0;
+  Row row{trial.scene + ": " + factor.name, kRight, 180.0, {}};
+  int accepted = 0, right = 0, wrong = 0;
   for (std::size_t i = 0; i < sequence.size(); i += static_cast<std::size_t>(trial.every_query)) {
-    const Outcome outcome = locate(map, relocalizer, query_of(sequence, i));
-    ++asked;
+    row.outcomes.push_back(locate(map, relocalizer, query_of(sequence, i)));
+    const Outcome& outcome = row.outcomes.back();
     if (!outcome.report.accepted) continue;
     ++accepted;
     right += outcome.global.distance <= kRight ? 1 : 0;
     wrong += outcome.global.distance > 0.5 ? 1 : 0;
   }
-  const double n = std::max(1, asked);
+  append_csv(trial.csv, row);
+  const std::size_t asked = row.outcomes.size();
+  const double n = std::max(1.0, static_cast<double>(asked));
   fmt::print("| {} | {} | {} | {:.3f} | {} | {:.1f} % | {:.1f} % | {} |\n", factor.name,
              first ? fmt::format("{:.1f} s", first->seconds) : "-",
              first ? fmt::format("{:.3f} m", first->distance) : "-", first ? first->score() : 0.0,

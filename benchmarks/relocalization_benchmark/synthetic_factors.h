@@ -14,6 +14,7 @@ namespace dxslam::benchmark {
 struct SyntheticTrial {
   std::function<std::unique_ptr<FeatureExtractor>()> make_extractor;
   RelocalizationOptions options;
+  std::string csv;  ///< as of append_csv(); empty: none
   std::string scene = "room";
   double fps = 5.0;       ///< of both passes
   int every_query = 10;   ///< every n-th frame of the second pass is asked as an isolated image
