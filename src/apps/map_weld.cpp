@@ -8,6 +8,7 @@
 
 #include "loop_closing/loop_closer.h"
 #include "slam/loop_search.h"
+#include "slam/system_options.h"
 
 namespace dxslam::apps {
 namespace {
@@ -28,7 +29,8 @@ std::vector<StoredLoopEdge> stored_loops(const Map& map, const std::vector<LoopE
 std::size_t weld_components(StoredMap& stored) {
   Map& map = stored.map;
   const MapHeader& header = stored.header;
-  LoopSearch search(LoopOptions(), find_vocabulary("auto", header.extractor), header.traits);
+  LoopSearch search(LoopOptions(), SystemOptions().loop_relaxation,
+                    find_vocabulary("auto", header.extractor), header.traits);
   if (!search.usable()) return 0;
   LoopCloser closer(header.camera, header.traits, LoopCloserOptions(), true);
   std::vector<LoopEdge> known;

@@ -11,9 +11,9 @@ namespace dxslam {
 namespace {
 
 LoopSearch make_search(const SystemOptions& options, const FeatureExtractor& extractor) {
-  if (!options.close_loops || options.mode != "slam") return {options.loop_detection, "", {}};
-  return {options.loop_detection, find_vocabulary(options.vocabulary, extractor.name()),
-          extractor.traits()};
+  if (!options.close_loops || options.mode != "slam") return {{}, 1.0, "", {}};
+  return {options.loop_detection, options.loop_relaxation,
+          find_vocabulary(options.vocabulary, extractor.name()), extractor.traits()};
 }
 
 }  // namespace

@@ -25,6 +25,17 @@ std::string narrowed_method(const std::string& wanted, bool words, const Descrip
   return global ? "global-only" : "none";
 }
 
+LoopOptions eased(LoopOptions options, double by) {
+  for (double* least : {&options.min_score_orb, &options.min_score_hf, &options.min_score_global}) {
+    *least /= by;
+  }
+  for (double* most :
+       {&options.max_distance, &options.max_distance_paper, &options.max_distance_global}) {
+    *most = std::min(2.0, *most * by);
+  }
+  return options;
+}
+
 // The keyframe itself, its covisible ones and those that share points with these.
 std::unordered_set<KeyframeId> tied_to(const Map& map, KeyframeId keyframe) {
   std::unordered_set<KeyframeId> tied = {keyframe};
@@ -40,7 +51,7 @@ std::unordered_set<KeyframeId> tied_to(const Map& map, KeyframeId keyframe) {
 
 }  // namespace
 
-LoopSearch::LoopSearch(const LoopOptions& options, const std::string& vocabulary,
+LoopSearch::LoopSearch(const LoopOptions& options, double relaxation, const std::string& vocabulary,
                        const DescriptorTraits& traits) {
   if (!vocabulary.empty()) {
     vocabulary_ = Vocabulary::load(vocabulary);
@@ -53,7 +64,7 @@ LoopSearch::LoopSearch(const LoopOptions& options, const std::string& vocabulary
   }
   method_ = narrowed_method(options.method, vocabulary_.has_value(), traits);
   if (method_ == "none") return;
-  LoopOptions narrowed = options;
+  LoopOptions narrowed = eased(options, relaxation);
   narrowed.method = method_;
   detector_.emplace(narrowed);
 }

@@ -18,10 +18,11 @@ namespace dxslam {
 /// descriptors of a map's keyframes, kept beside the map. Belongs to the thread that owns the map.
 class LoopSearch {
  public:
-  /// Takes what is there: words with a vocabulary that fits the descriptors, global descriptors
-  /// where the extractor has them; the method of `options` is narrowed accordingly. Throws
-  /// InputError if the vocabulary is given but cannot be read or does not fit.
-  LoopSearch(const LoopOptions& options, const std::string& vocabulary,
+  /// `relaxation` eases the thresholds of `options`. Takes what is there: words with a vocabulary
+  /// that fits the descriptors, global descriptors where the extractor has them; the method of
+  /// `options` is narrowed accordingly. Throws InputError if the vocabulary is given but cannot be
+  /// read or does not fit.
+  LoopSearch(const LoopOptions& options, double relaxation, const std::string& vocabulary,
              const DescriptorTraits& traits);
 
   /// False where there is neither: no loop can be found.

@@ -19,6 +19,7 @@ struct SystemOptions {
   std::string mode = "slam";
   std::string vocabulary = "auto";
   bool close_loops = true;
+  double loop_relaxation = 1.0;
   int new_map_after = 20;
   bool deterministic = false;
   int queued_frames = 2;
@@ -41,6 +42,8 @@ struct SystemOptions {
     visit("vocabulary", self.vocabulary, "",
           "file; auto: the one shipped for the features; none: loops by global descriptor alone");
     visit("close_loops", self.close_loops, "", "look for loops and correct the map by them");
+    visit("loop_relaxation", self.loop_relaxation, {1, 10}, "",
+          "factor that eases the thresholds of loop_detection; geometry has the last word anyway");
     visit("new_map_after", self.new_map_after, {1, 1000000}, "frames",
           "lost in a row before a new map is begun beside the old one (slam)");
     visit("deterministic", self.deterministic, "",
