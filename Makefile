@@ -48,7 +48,7 @@ format:  ## format all C++ sources
 	$(CLANG_FORMAT) -i $(SOURCES)
 
 check-format:  ## fail if a C++ source is not formatted
-	$(CLANG_FORMAT) --dry-run --Werror $(SOURCES)
+	@$(CLANG_FORMAT) --dry-run --Werror $(SOURCES)
 
 tidy: SETUP_OPTIONS = --dev
 tidy: PRESET = dev
