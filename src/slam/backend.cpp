@@ -11,7 +11,7 @@ namespace dxslam {
 namespace {
 
 LoopSearch make_search(const SystemOptions& options, const FeatureExtractor& extractor) {
-  if (!options.close_loops || options.mode != "slam") return {{}, 1.0, "", {}};
+  if (!options.close_loops) return {{}, 1.0, "", {}};
   return {options.loop_detection, options.loop_relaxation,
           find_vocabulary(options.vocabulary, extractor.name()), extractor.traits()};
 }
@@ -50,6 +50,7 @@ LocalMapPtr Backend::insert(const KeyframeRequest& request) {
   KeyframeRequest kept = request;
   kept.frame = keyframe_of(*request.frame);
   report_ = mapper_.insert(kept);
+  grown_ = true;
   if (!kept.frame->global.empty()) index_.add(report_.keyframe, kept.frame->global);
   return mapper_.local_map();
 }
@@ -128,7 +129,7 @@ RelocalizationAnswer Backend::relocalize(const Frame& frame) {
 }
 
 void Backend::finish() {
-  if (options_.mode != "slam") return;
+  if (!grown_) return;
   const bool whole = options_.final_bundle && map().keyframe_count() > 1;
   if (whole) {
     closer_.cancel();

@@ -56,7 +56,8 @@ class Backend {
   LocalMapPtr follow(const KeyframeRequest& request);
   RelocalizationAnswer relocalize(const Frame& frame);
 
-  /// Ends what runs in the background and, if so configured, adjusts the whole map once more.
+  /// Ends what runs in the background and, if so configured, adjusts the whole map once more; a map
+  /// that was only localized in stays as it is.
   void finish();
 
   const Map& map() const { return mapper_.map(); }
@@ -79,6 +80,7 @@ class Backend {
   Relocalizer relocalizer_;
   GlobalIndex index_;
   MappingReport report_;
+  bool grown_ = false;  // a keyframe was inserted, so there is something to adjust
   std::vector<LoopRecord> records_;
 };
 

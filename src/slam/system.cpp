@@ -35,6 +35,7 @@ System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor
       extracted_(static_cast<std::size_t>(options.queued_frames)),
       tasks_(static_cast<std::size_t>(options.queued_keyframes)) {
   camera_.validate("calibration");
+  mapping_ = options_.mode == "slam";
   extractor_->keep_encoder(true);
   if (options_.deterministic) return;
   threads_.emplace_back([this] { guard(&System::run_extraction); });
@@ -64,7 +65,7 @@ void System::set_autosave(int keyframes, MapCallback save) {
 
 System::Incoming System::incoming(const RgbdImage& image) {
   require(!finished_, "no image can be processed after finish()");
-  if (!mapping() && !map_loaded_) {
+  if (!mapping_ && !map_loaded_) {
     throw InputError("localization mode has no map, expected one to be loaded");
   }
   return {image, std::exchange(next_begins_sequence_, false)};
@@ -175,7 +176,7 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted,
     seeking_ = false;
     return *found;
   }
-  if (++lost_frames_ >= options_.new_map_after && mapping()) {
+  if (++lost_frames_ >= options_.new_map_after && mapping_) {
     tracker_.restart();
     newest_local_map();
     lost_frames_ = 0;
@@ -215,7 +216,7 @@ RelocalizationAnswer System::relocalize(const Frame& frame) {
 }
 
 void System::map_keyframe(const KeyframeRequest& request) {
-  if (!mapping()) {
+  if (!mapping_) {
     publish(backend_.follow(request));
     return;
   }

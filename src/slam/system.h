@@ -75,6 +75,8 @@ class System {
   /// beyond the call. Before the first image only.
   using MapCallback = std::function<void(const Map&, const std::vector<LoopEdge>&)>;
   void set_autosave(int keyframes, MapCallback save);
+  /// Switches between mapping (true) and localization only, from the next keyframe on. Any thread.
+  void set_mapping(bool on) { mapping_ = on; }
   /// The next image is of another recording: it may be anywhere in the map.
   void begin_sequence() { next_begins_sequence_ = true; }
 
@@ -140,7 +142,6 @@ class System {
   void note_map_size();
   std::optional<std::uint32_t> component_of(const TrackedFrame& frame) const;
   bool has_error();
-  bool mapping() const { return options_.mode == "slam"; }
 
   void run_extraction();
   void run_tracking();
@@ -166,6 +167,7 @@ class System {
   bool seeking_ = false;  // there is a map, but where in it is not known
   int lost_frames_ = 0;   // in a row
   bool map_loaded_ = false;
+  std::atomic<bool> mapping_{true};
 
   BoundedQueue<Incoming> images_;
   BoundedQueue<Extracted> extracted_;

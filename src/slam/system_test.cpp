@@ -83,6 +83,25 @@ TEST(System, GoesOnWithALoadedMap) {
   EXPECT_LT(system->map().keyframe_count(), 2 * keyframes);
 }
 
+TEST(System, SwitchesBetweenLocalizationAndMapping) {
+  SystemOptions options = deterministic();
+  options.mode = "localization";
+  const auto first = make_system(deterministic());
+  feed(*first, 0, 15);
+  first->finish();
+  const auto system = make_system(options);
+  const std::size_t known = first->map().keyframe_count();
+  system->load_map(Map(take_apart(first->map())), {});
+  feed(*system, 0, 12, 100.0);
+  EXPECT_EQ(system->map().keyframe_count(), known);
+  system->set_mapping(true);
+  feed(*system, 12, kFrames, 100.0);
+  system->finish();
+  EXPECT_GT(system->map().keyframe_count(), known);
+  EXPECT_EQ(system->trajectory().size(), static_cast<std::size_t>(kFrames));
+  EXPECT_LT(worst_error(system->trajectory(), 100.0), 0.02);
+}
+
 TEST(System, LocalizationNeedsAMap) {
   SystemOptions options = deterministic();
   options.mode = "localization";
