@@ -32,7 +32,7 @@ from .graphs import (
 from .matching import blocks_of
 
 Tensor = NDArray[np.float32]
-CALIBRATION_IMAGES = 320
+CALIBRATION_IMAGES = 240
 DARK_SHARE = 0.35
 
 
