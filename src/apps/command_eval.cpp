@@ -9,6 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/eval_openloris.h"
+#include "apps/statistics_json.h"
 #include "core/error.h"
 #include "evaluation/ate.h"
 #include "evaluation/rpe.h"
@@ -35,11 +36,6 @@ struct EvalArguments {
 Alignment alignment_of(const std::string& name) {
   if (name == "sim3") return Alignment::kSim3;
   return name == "se3" ? Alignment::kSe3 : Alignment::kNone;
-}
-
-nlohmann::ordered_json to_json(const ErrorStatistics& s) {
-  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std},
-          {"min", s.min},   {"max", s.max},   {"count", s.count}};
 }
 
 void print_header() {
@@ -75,7 +71,7 @@ void evaluate_ate_command(const EvalArguments& arguments) {
                               {"truth_poses", truth.size()},
                               {"estimate_poses", estimate.size()},
                               {"scale", scale},
-                              {"position", to_json(report.position)}});
+                              {"position", statistics_json(report.position)}});
   if (arguments.plot.empty()) return;
   const std::string title = std::filesystem::path(arguments.estimate).filename().string();
   write_file_atomically(
@@ -107,8 +103,8 @@ void evaluate_rpe_command(const EvalArguments& arguments) {
                               {"all_pairs", options.all_pairs},
                               {"alignment", arguments.alignment},
                               {"max_difference_s", options.max_difference},
-                              {"translation_m", to_json(report.translation)},
-                              {"rotation_deg", to_json(report.rotation)}});
+                              {"translation_m", statistics_json(report.translation)},
+                              {"rotation_deg", statistics_json(report.rotation)}});
 }
 
 // What both metrics have in common.

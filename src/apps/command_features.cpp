@@ -9,6 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/features_arguments.h"
+#include "apps/process.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
 #include "io/image_file.h"
@@ -58,7 +59,7 @@ void write_features(const Features& features, const std::string& path) {
 void extract(const ExtractArguments& arguments) {
   check_distinct(arguments.images);
   const auto extractor = make_extractor(arguments.extractor);
-  if (!arguments.npz.empty()) fs::create_directories(arguments.npz);
+  if (!arguments.npz.empty()) make_folder(arguments.npz);
   for (const std::string& path : arguments.images) {
     const cv::Mat image = read_image(path, arguments.low_light);
     const Features features = extractor->extract(image, true);

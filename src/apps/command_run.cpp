@@ -2,13 +2,12 @@
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <thread>
 
 #include "apps/commands.h"
 #include "apps/map_io.h"
+#include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/run_output.h"
 #include "apps/run_settings.h"
@@ -23,19 +22,6 @@ namespace dxslam::apps {
 namespace {
 
 constexpr double kMinTrackedShare = 0.1;  // below it the run counts as failed
-
-std::atomic<bool> stop_requested{false};
-
-void request_stop(int) { stop_requested = true; }
-
-// The first SIGINT or SIGTERM ends the run in order, a second one at once.
-void catch_signals() {
-  struct sigaction action{};
-  action.sa_handler = request_stop;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 SystemOptions load_system_options(const RunSettings& settings) {
   SystemOptions options;
@@ -62,14 +48,6 @@ const char* state_name(TrackingState state) {
   }
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
-  }
-}
-
 // Waits until the recording's own clock has come to `stamp`.
 class RealTimePace {
  public:
@@ -89,7 +67,7 @@ void feed(const RunSettings& settings, RgbdSequence& sequence, System& system, R
   RealTimePace pace;
   for (std::size_t i = 0; i < sequence.size(); i += settings.stride) {
     if (settings.max_frames > 0 && record.frames_offered >= settings.max_frames) break;
-    if (stop_requested) {
+    if (stop_requested()) {
       record.interrupted = true;
       break;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include "apps/eval_openloris.h"
+#include "apps/statistics_json.h"
 
 #include <fmt/format.h>
 
@@ -114,11 +115,6 @@ void print_report(const std::string& file, const OpenlorisReport& report) {
       fmt::join(absent, ", "), t.correct_rate_present);
 }
 
-Json to_json(const ErrorStatistics& s) {
-  return {
-      {"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}, {"count", s.count}};
-}
-
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json to_json(const OpenlorisSequenceReport& s) {
@@ -131,9 +127,9 @@ Json to_json(const OpenlorisSequenceReport& s) {
                {"tracked_rate", s.tracked_rate},
                {"correct_rate", s.correct_rate},
                {"correct_rate_once_started", s.correct_rate_once_started},
-               {"ate_m", to_json(s.position)},
-               {"c_ate_m", to_json(s.correct_position)},
-               {"aoe_deg", to_json(s.angle)},
+               {"ate_m", statistics_json(s.position)},
+               {"c_ate_m", statistics_json(s.correct_position)},
+               {"aoe_deg", statistics_json(s.angle)},
                {"start_delay_s", finite_or_null(s.start_delay)}};
   json["relocalization_score"] =
       s.relocalization_score ? Json(*s.relocalization_score) : Json(nullptr);

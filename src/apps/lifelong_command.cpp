@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/map_io.h"
+#include "apps/process.h"
 #include "apps/progress.h"
 #include "core/options.h"
 #include "evaluation/openloris_result.h"
@@ -136,12 +137,7 @@ void write_lifelong(const LifelongSettings& settings, const System& system,
 int run(const LifelongSettings& settings) {
   const SystemOptions options = options_of(settings);
   const auto sequences = open_all(settings);
-  std::error_code error;
-  fs::create_directories(settings.out, error);
-  if (error) {
-    throw InputError(
-        fmt::format("output folder {} cannot be made: {}", settings.out, error.message()));
-  }
+  make_folder(settings.out);
   std::size_t planned = 0;
   for (const auto& s : sequences) planned += (s->size() + settings.stride - 1) / settings.stride;
   Progress progress("frames", planned);

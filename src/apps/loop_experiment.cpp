@@ -91,7 +91,7 @@ class FeatureSide {
 };
 
 /// One method at work.
-struct Contestant {
+struct Competitor {
   LoopDetector detector;
   FeatureSide* side;
   MethodRun run;
@@ -131,15 +131,15 @@ class Experiment {
     const bool second = two_passes && frame >= *settings_.second_pass_from;
     if (!two_passes || second) {
       result_.queries.push_back(frame);
-      for (Contestant& contestant : contestants_) contestant.ask(frame, excluded);
+      for (Competitor& contestant : contestants_) contestant.ask(frame, excluded);
     }
     if (second) return;
     result_.places.push_back(frame);
-    for (Contestant& c : contestants_) c.detector.add(frame, c.side->bow(), c.side->global());
+    for (Competitor& c : contestants_) c.detector.add(frame, c.side->bow(), c.side->global());
   }
 
   LoopExperiment take_result() {
-    for (Contestant& contestant : contestants_) {
+    for (Competitor& contestant : contestants_) {
       result_.runs.push_back(std::move(contestant.run));
     }
     if (hf_) result_.hf_name = hf_->extractor().name();
@@ -173,7 +173,7 @@ class Experiment {
   std::vector<LoopMethod> methods_;
   std::unique_ptr<FeatureSide> orb_;
   std::unique_ptr<FeatureSide> hf_;
-  std::vector<Contestant> contestants_;
+  std::vector<Competitor> contestants_;
   LoopExperiment result_;
 };
 

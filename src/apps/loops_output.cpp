@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include "apps/loops_output.h"
+#include "apps/process.h"
 
 #include <fmt/format.h>
 
@@ -107,14 +108,6 @@ Json summary_of(const LoopSettings& settings, const LoopExperiment& experiment,
   if (settings.second_pass_from) summary["second_pass_from"] = *settings.second_pass_from;
   summary["candidates"] = run.options.candidates;
   return summary;
-}
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
-  }
 }
 
 void write(const fs::path& path, const std::string& text) {

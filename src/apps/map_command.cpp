@@ -9,6 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/map_weld.h"
+#include "apps/process.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "map_files/map_export.h"
@@ -139,10 +140,7 @@ void check_command(const MapArguments& arguments) {
 
 void write_thumbnails(const std::string& folder, const StoredMap& stored) {
   namespace fs = std::filesystem;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw InputError(fmt::format("{}: folder cannot be made: {}", folder, error.message()));
+  make_folder(folder);
   std::size_t written = 0;
   for (std::size_t id = 0; id < stored.thumbnails.size(); ++id) {
     if (stored.thumbnails[id].empty()) continue;

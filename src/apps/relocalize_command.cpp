@@ -10,6 +10,7 @@
 #include "apps/commands.h"
 #include "apps/features_arguments.h"
 #include "apps/map_io.h"
+#include "apps/process.h"
 #include "apps/progress.h"
 #include "core/error.h"
 #include "evaluation/statistics.h"
@@ -73,11 +74,7 @@ struct Results {
 };
 
 void write_results(const std::string& folder, const Results& results) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
-  }
+  make_folder(folder);
   const std::filesystem::path out(folder);
   write_trajectory(out / "poses.txt", results.poses);
   write_file_atomically(out / "relocalization.csv", results.rows);

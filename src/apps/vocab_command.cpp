@@ -2,14 +2,13 @@
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
 #include "apps/commands.h"
 #include "apps/features_arguments.h"
 #include "apps/image_stream.h"
+#include "apps/process.h"
 #include "apps/progress.h"
 #include "core/error.h"
 #include "core/options.h"
@@ -36,18 +35,6 @@ struct TrainArguments {
   std::size_t stride = 1;
   unsigned photo_views = 2;
 };
-
-std::atomic<bool> stop_requested{false};
-
-void request_stop(int) { stop_requested = true; }
-
-void catch_signals() {
-  struct sigaction action{};
-  action.sa_handler = request_stop;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 // Everything that a checkpoint must agree with.
 std::string describe_training(const TrainArguments& arguments, const std::string& features) {
@@ -86,10 +73,10 @@ bool add_images(const TrainArguments& arguments, ImageStream& stream, FeatureExt
     if (!arguments.checkpoint.empty() && position % kImagesACheckpoint == 0) {
       trainer.save(arguments.checkpoint, source, position);
     }
-    return !stop_requested;
+    return !stop_requested();
   });
   progress.finish();
-  if (!stop_requested) return true;
+  if (!stop_requested()) return true;
   if (!arguments.checkpoint.empty()) trainer.save(arguments.checkpoint, source, position);
   return false;
 }
