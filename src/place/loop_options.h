@@ -16,11 +16,11 @@ struct LoopOptions {
   std::string method = "hf-bow-global";
   int candidates = 5;
   double min_score_orb = 0.405;        // calibrated
-  double min_score_hf = 0.336;         // calibrated
-  double min_score_global = 0.34;      // calibrated
-  double max_distance = 1.503;         // calibrated
-  double max_distance_paper = 0.843;   // calibrated
-  double max_distance_global = 0.836;  // calibrated
+  double min_score_hf = 0.322;         // calibrated
+  double min_score_global = 0.313;     // calibrated
+  double max_distance = 1.442;         // calibrated
+  double max_distance_paper = 0.794;   // calibrated
+  double max_distance_global = 0.781;  // calibrated
   int min_inliers_orb = 20;            // calibrated
   int min_inliers_hf = 20;             // calibrated
   int verified_candidates = 3;
