@@ -14,6 +14,7 @@
 namespace dxslam {
 namespace {
 
+constexpr int kQuickPause = 10;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 int count_map_points(const std::vector<KnownPoint>& known) {
@@ -95,6 +96,7 @@ void Tracker::restart() {
   state_ = TrackingState::kNotStarted;
   last_ = {};
   last_from_current_ = SE3();
+  quick_pause_ = 0;
   counts_.clear();
   frames_since_keyframe_ = 0;
   best_tracked_points_ = 0;
@@ -123,11 +125,24 @@ Tracker::OptionalEstimate Tracker::start(const Frame& frame) const {
   return Estimate{};
 }
 
-Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame,
-                                                    const KeypointGrid& grid) const {
+Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame, const KeypointGrid& grid) {
   if (state_ == TrackingState::kTracking) {
     const SE3 predicted = last_.world_from_camera * last_from_current_;
     if (OptionalEstimate estimate = track_by_prediction(frame, grid, predicted)) return estimate;
+  }
+  if (OptionalEstimate estimate = track_quickly(frame, grid)) return estimate;
+  const int all = std::numeric_limits<int>::max();
+  if (OptionalEstimate estimate = track_by_descriptors(frame, last_, all)) return estimate;
+  const LastFrame reference{local_->reference_frame, local_->world_from_reference,
+                            local_->reference_points};
+  if (OptionalEstimate estimate = track_by_descriptors(frame, reference, all)) return estimate;
+  return track_whole_local_map(frame);
+}
+
+Tracker::OptionalEstimate Tracker::track_quickly(const Frame& frame, const KeypointGrid& grid) {
+  if (quick_pause_ > 0) {
+    --quick_pause_;
+    return std::nullopt;
   }
   const OptionalEstimate quick = track_by_descriptors(frame, last_, options_.quick_keypoints);
   if (quick && static_cast<int>(quick->known.size()) >= options_.min_quick_inliers) {
@@ -136,12 +151,8 @@ Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame,
       return estimate;
     }
   }
-  const int all = std::numeric_limits<int>::max();
-  if (OptionalEstimate estimate = track_by_descriptors(frame, last_, all)) return estimate;
-  const LastFrame reference{local_->reference_frame, local_->world_from_reference,
-                            local_->reference_points};
-  if (OptionalEstimate estimate = track_by_descriptors(frame, reference, all)) return estimate;
-  return track_whole_local_map(frame);
+  quick_pause_ = kQuickPause;
+  return std::nullopt;
 }
 
 Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,

@@ -49,7 +49,10 @@ class Tracker {
   using OptionalEstimate = std::optional<Estimate>;
 
   OptionalEstimate start(const Frame& frame) const;
-  OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid) const;
+  OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid);
+  /// By the strongest keypoints first, then all around the pixels where these put them. Not tried
+  /// for a while after it failed: the light that made it fail lasts.
+  OptionalEstimate track_quickly(const Frame& frame, const KeypointGrid& grid);
   /// Matches the last frame's points around the pixels at which a pose puts them.
   OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid,
                                        const SE3& predicted) const;
@@ -80,6 +83,7 @@ class Tracker {
   LastFrame last_;
   SE3 last_from_current_;  // constant velocity: the motion of the last frame
   std::unordered_map<PointId, PointCount> counts_;
+  int quick_pause_ = 0;  // frames for which track_quickly is not tried
   int frames_since_keyframe_ = 0;
   int best_tracked_points_ = 0;  // since the last keyframe
 };
