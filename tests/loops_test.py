@@ -4,22 +4,14 @@
 """`dxslam loops` as a user runs it, on a synthetic recording. $DXSLAM_PROGRAM is the program."""
 import csv
 import json
-import os
 import shutil
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
+from cli_test import BAD_INPUT, BAD_USAGE, dxslam
+
 FRAMES = 40
-BAD_USAGE, BAD_INPUT = 2, 3
-
-
-def dxslam(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, timeout=300)
 
 
 class Loops(unittest.TestCase):

@@ -8,7 +8,6 @@ usage: map_file_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/d
 """
 import json
 import math
-import os
 import random
 import re
 import shutil
@@ -20,19 +19,11 @@ import time
 import unittest
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
+from cli_test import BAD_INPUT, BAD_USAGE, PROGRAM, ROOT, dxslam
+
 FIRST_VERSION = ROOT / "tests" / "data" / "map_v1.dxmap"
 FRAMES = 40
 KILLS = 40
-TIMEOUT = 300
-
-BAD_USAGE, BAD_INPUT = 2, 3
-
-
-def dxslam(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, timeout=TIMEOUT)
 
 
 class Saved(unittest.TestCase):

@@ -11,10 +11,9 @@
 #include "apps/progress.h"
 #include "apps/run_output.h"
 #include "apps/run_settings.h"
-#include "core/options.h"
+#include "apps/system_setup.h"
 #include "features/extractor_factory.h"
 #include "io/low_light.h"
-#include "io/options_yaml.h"
 #include "io/trajectory_file.h"
 #include "slam/system.h"
 
@@ -23,17 +22,11 @@ namespace {
 
 constexpr double kMinTrackedShare = 0.1;  // below it the run counts as failed
 
-SystemOptions load_system_options(const RunSettings& settings) {
-  SystemOptions options;
-  if (!settings.config.empty()) options = load_options(settings.config, options);
-  if (!settings.features.empty()) options.features = settings.features;
-  if (options.features == "auto") options.features = default_extractor();
-  if (!settings.mode.empty()) options.mode = settings.mode;
+SystemOptions options_of(const RunSettings& settings) {
+  SystemOptions options = load_system_options(
+      {settings.config, settings.features, settings.mode, settings.deterministic});
   if (!settings.vocabulary.empty()) options.vocabulary = settings.vocabulary;
   if (settings.no_loop_closing) options.close_loops = false;
-  options.deterministic = options.deterministic || settings.deterministic;
-  options.extractor.deterministic = options.extractor.deterministic || options.deterministic;
-  validate_options("", options);
   return options;
 }
 
@@ -131,7 +124,7 @@ void prepare_map(const RunSettings& settings, const SystemOptions& options, cons
 int run(const RunSettings& settings) {
   const Stopwatch startup;
   catch_signals();
-  const SystemOptions options = load_system_options(settings);
+  const SystemOptions options = options_of(settings);
   const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, settings.reader);
   std::unique_ptr<TrajectoryWriter> writer;
   if (!settings.out.empty()) {

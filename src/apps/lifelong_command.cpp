@@ -9,12 +9,11 @@
 #include "apps/map_io.h"
 #include "apps/process.h"
 #include "apps/progress.h"
-#include "core/options.h"
+#include "apps/system_setup.h"
 #include "evaluation/openloris_result.h"
 #include "features/extractor_factory.h"
 #include "io/atomic_file.h"
 #include "io/low_light.h"
-#include "io/options_yaml.h"
 #include "io/sequence_reader.h"
 #include "io/trajectory_file.h"
 #include "slam/system.h"
@@ -47,18 +46,6 @@ struct Visit {
   Trajectory online;  ///< poses in the map's world, as given at the time
   double first_stamp = 0.0;
 };
-
-SystemOptions options_of(const LifelongSettings& settings) {
-  SystemOptions options;
-  if (!settings.config.empty()) options = load_options(settings.config, options);
-  if (!settings.features.empty()) options.features = settings.features;
-  if (options.features == "auto") options.features = default_extractor();
-  if (!settings.mode.empty()) options.mode = settings.mode;
-  options.deterministic = options.deterministic || settings.deterministic;
-  options.extractor.deterministic = options.extractor.deterministic || options.deterministic;
-  validate_options("", options);
-  return options;
-}
 
 std::vector<std::unique_ptr<RgbdSequence>> open_all(const LifelongSettings& settings) {
   std::vector<std::unique_ptr<RgbdSequence>> all;
@@ -135,7 +122,8 @@ void write_lifelong(const LifelongSettings& settings, const System& system,
 }
 
 int run(const LifelongSettings& settings) {
-  const SystemOptions options = options_of(settings);
+  const SystemOptions options = load_system_options(
+      {settings.config, settings.features, settings.mode, settings.deterministic});
   const auto sequences = open_all(settings);
   make_folder(settings.out);
   std::size_t planned = 0;

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -16,23 +15,13 @@
 #include "features/extractor_factory.h"
 #include "io/low_light.h"
 #include "place/two_view_check.h"
+#include "slam/stage_times.h"
 #include "vocabulary/vocabulary.h"
 
 namespace dxslam::apps {
 namespace {
 
 constexpr double kPoseTolerance = 0.05;  // seconds between a frame and its pose, at most
-
-class Timer {
- public:
-  double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
-        .count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 std::string vocabulary_path(const std::string& given, const std::string& name) {
   if (!given.empty()) return given;
@@ -66,10 +55,10 @@ class FeatureSide {
   const std::vector<float>& global() const { return now_->global; }
 
   void extract(const cv::Mat& image, std::uint32_t frame) {
-    const Timer extraction;
+    const Stopwatch extraction;
     now_ = std::make_shared<Features>(extractor_->extract(image, true));
     extraction_ms_.push_back(extraction.ms());
-    const Timer quantising;
+    const Stopwatch quantising;
     if (vocabulary_) bow_ = vocabulary_->transform(now_->descriptors);
     words_ms_ = quantising.ms();
     if (keep_all_) all_[frame] = now_;
@@ -97,7 +86,7 @@ struct Competitor {
   MethodRun run;
 
   void ask(std::uint32_t frame, const PlaceExclusion& excluded) {
-    const Timer timer;
+    const Stopwatch timer;
     const LoopVerifier verify = [this](std::uint32_t id) { return side->inliers_with(id); };
     LoopQuery query{frame, detector.detect(side->bow(), side->global(), excluded, verify), 0.0};
     query.ms = timer.ms() + (detector.method().words ? side->words_ms() : 0.0);

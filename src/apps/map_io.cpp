@@ -5,10 +5,8 @@
 #include <chrono>
 
 namespace dxslam::apps {
-namespace {
 
-MapSnapshot snapshot_of(const MapHeader& header, const Map& map,
-                        const std::vector<LoopEdge>& loops) {
+std::vector<StoredLoopEdge> stored_loops(const Map& map, const std::vector<LoopEdge>& loops) {
   std::vector<StoredLoopEdge> stored;
   for (const LoopEdge& edge : loops) {
     const Map::Anchor a = map.anchor_of(edge.a);
@@ -17,10 +15,14 @@ MapSnapshot snapshot_of(const MapHeader& header, const Map& map,
                       map.keyframe(a.keyframe).world_from_camera.inverse() *
                           map.keyframe(b.keyframe).world_from_camera});
   }
-  return take_snapshot(header, map, stored);
+  return stored;
 }
 
-}  // namespace
+std::vector<LoopEdge> loop_edges(const std::vector<StoredLoopEdge>& stored) {
+  std::vector<LoopEdge> loops;
+  for (const StoredLoopEdge& edge : stored) loops.push_back({edge.a, edge.b});
+  return loops;
+}
 
 MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor) {
   return {camera, extractor.name(), extractor.model_hash(), extractor.traits()};
@@ -30,14 +32,12 @@ void load_map_into(System& system, const std::string& path, const MapHeader& cur
   StoredMap stored = load_map(path);
   require_same_features(stored.header, current, path);
   if (grows) require_same_camera(stored.header, current, path);
-  std::vector<LoopEdge> loops;
-  for (const StoredLoopEdge& edge : stored.loops) loops.push_back({edge.a, edge.b});
-  system.load_map(std::move(stored.map), std::move(loops));
+  system.load_map(std::move(stored.map), loop_edges(stored.loops));
 }
 
 void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
                      const std::vector<LoopEdge>& loops) {
-  save_map(path, snapshot_of(header, map, loops));
+  save_map(path, take_snapshot(header, map, stored_loops(map, loops)));
 }
 
 void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops) {
@@ -45,9 +45,11 @@ void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops) {
     if (under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     under_way_.get();
   }
-  under_way_ = std::async(
-      std::launch::async,
-      [path = path_, snapshot = snapshot_of(header_, map, loops)] { save_map(path, snapshot); });
+  under_way_ =
+      std::async(std::launch::async,
+                 [path = path_, snapshot = take_snapshot(header_, map, stored_loops(map, loops))] {
+                   save_map(path, snapshot);
+                 });
 }
 
 void AutoSaver::finish() {

@@ -17,6 +17,10 @@ namespace dxslam::apps {
 /// What a map made now, with this camera and these features, is made with.
 MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor);
 
+/// The loops of a map as its file holds them, and back.
+std::vector<StoredLoopEdge> stored_loops(const Map& map, const std::vector<LoopEdge>& loops);
+std::vector<LoopEdge> loop_edges(const std::vector<StoredLoopEdge>& stored);
+
 /// Reads a map file and hands it to the system. Throws InputError if it is damaged or was made with
 /// other features, or, where the map is to grow, with another camera.
 void load_map_into(System& system, const std::string& path, const MapHeader& current, bool grows);

@@ -6,25 +6,12 @@
 #include <unordered_map>
 #include <vector>
 
+#include "apps/map_io.h"
 #include "loop_closing/loop_closer.h"
 #include "slam/loop_search.h"
 #include "slam/system_options.h"
 
 namespace dxslam::apps {
-namespace {
-
-std::vector<StoredLoopEdge> stored_loops(const Map& map, const std::vector<LoopEdge>& loops) {
-  std::vector<StoredLoopEdge> stored;
-  for (const LoopEdge& loop : loops) {
-    if (!map.has_keyframe(loop.a) || !map.has_keyframe(loop.b)) continue;
-    stored.push_back({loop.a, loop.b,
-                      map.keyframe(loop.a).world_from_camera.inverse() *
-                          map.keyframe(loop.b).world_from_camera});
-  }
-  return stored;
-}
-
-}  // namespace
 
 std::size_t weld_components(StoredMap& stored) {
   Map& map = stored.map;
@@ -33,8 +20,7 @@ std::size_t weld_components(StoredMap& stored) {
                     find_vocabulary("auto", header.extractor), header.traits);
   if (!search.usable()) return 0;
   LoopCloser closer(header.camera, header.traits, LoopCloserOptions(), true);
-  std::vector<LoopEdge> known;
-  for (const StoredLoopEdge& loop : stored.loops) known.push_back({loop.a, loop.b});
+  const std::vector<LoopEdge> known = loop_edges(stored.loops);
   closer.set_closed_loops(known);
   std::unordered_map<KeyframeId, std::uint32_t> origin;  // the component before any was joined
   const std::vector<KeyframeId> ids = map.keyframe_ids();

@@ -206,8 +206,9 @@ void write_results(const std::string& folder, const RunSettings& settings, const
   std::filesystem::rename(dir / "trajectory.txt", dir / "trajectory_online.txt");
   write_trajectory(dir / "trajectory.txt", trajectory);
   write_trajectory(dir / "keyframes.txt", system.keyframe_trajectory());
-  for (const ComponentSummary& c : system.components()) {
-    if (c.component == system.components().front().component || c.frames == 0) continue;
+  const std::vector<ComponentSummary> components = system.components();
+  for (const ComponentSummary& c : components) {
+    if (c.component == components.front().component || c.frames == 0) continue;
     write_trajectory(dir / fmt::format("trajectory_map{}.txt", c.component),
                      system.trajectory(c.component));
   }

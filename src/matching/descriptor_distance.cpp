@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/simd.h"
+#include "matching/differing_bits.h"
 
 namespace dxslam {
 namespace {
@@ -62,28 +63,12 @@ void float_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
   }
 }
 
-// Inlined into each clone of its callers, so that it uses their instruction set.
-[[gnu::always_inline]] inline int count_differing_bits(const std::uint8_t* a, const std::uint8_t* b,
-                                                       int bytes) {
-  int bits = 0;
-  int k = 0;
-  for (; k + 8 <= bytes; k += 8) {
-    std::uint64_t x = 0;
-    std::uint64_t y = 0;
-    std::memcpy(&x, a + k, 8);
-    std::memcpy(&y, b + k, 8);
-    bits += __builtin_popcountll(x ^ y);
-  }
-  for (; k < bytes; ++k) bits += __builtin_popcount(static_cast<unsigned>(a[k] ^ b[k]));
-  return bits;
-}
-
-DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, int bytes) {
+DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
   return count_differing_bits(a, b, bytes);
 }
 
 DXSLAM_SIMD void binary_row_similarities(const std::uint8_t* a, const std::uint8_t* b, int b_rows,
-                                         std::size_t b_step, int bytes, float* similarity) {
+                                         std::size_t b_step, std::size_t bytes, float* similarity) {
   for (int j = 0; j < b_rows; ++j) {
     const std::uint8_t* row = b + static_cast<std::size_t>(j) * b_step;
     similarity[j] = static_cast<float>(-count_differing_bits(a, row, bytes));
@@ -112,7 +97,8 @@ float descriptor_distance(const cv::Mat& a, int row_a, const cv::Mat& b, int row
   if (a.depth() == CV_32F) {
     return distance_of_similarity(dot(a.ptr<float>(row_a), b.ptr<float>(row_b), a.cols), false);
   }
-  return static_cast<float>(differing_bits(a.ptr(row_a), b.ptr(row_b), a.cols));
+  return static_cast<float>(
+      differing_bits(a.ptr(row_a), b.ptr(row_b), static_cast<std::size_t>(a.cols)));
 }
 
 void descriptor_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
@@ -124,7 +110,7 @@ void descriptor_similarities(const cv::Mat& a, const cv::Mat& b, float* similari
     return;
   }
   for (int i = 0; i < a.rows; ++i) {
-    binary_row_similarities(a.ptr(i), b.ptr(), b.rows, b.step[0], a.cols,
+    binary_row_similarities(a.ptr(i), b.ptr(), b.rows, b.step[0], static_cast<std::size_t>(a.cols),
                             similarity + static_cast<std::size_t>(i) * b.rows);
   }
 }

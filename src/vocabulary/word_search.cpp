@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/simd.h"
+#include "matching/differing_bits.h"
 
 #define DXSLAM_INLINE [[gnu::always_inline]] inline
 
@@ -45,17 +46,7 @@ struct FloatDistance {
 struct BitDistance {
   using Value = int;
   DXSLAM_INLINE static int of(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
-    int bits = 0;
-    std::size_t k = 0;
-    for (; k + 8 <= bytes; k += 8) {
-      std::uint64_t x = 0;
-      std::uint64_t y = 0;
-      std::memcpy(&x, a + k, 8);
-      std::memcpy(&y, b + k, 8);
-      bits += __builtin_popcountll(x ^ y);
-    }
-    for (; k < bytes; ++k) bits += __builtin_popcount(static_cast<unsigned>(a[k] ^ b[k]));
-    return bits;
+    return count_differing_bits(a, b, bytes);
   }
 };
 
