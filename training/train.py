@@ -72,13 +72,15 @@ class Trainer:
 
     def __init__(self, args: argparse.Namespace) -> None:
         self.args, self.step = args, 0
-        self.model = LocalNet(NetworkConfig()).to(memory_format=torch.channels_last)
-        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=1e-4)
-        self.ema, self.losses = Ema(self.model), LossOptions()
         args.run.mkdir(parents=True, exist_ok=True)
         resume = args.resume or args.run / "last.pt"
-        if resume.exists():
-            self._restore(torch.load(resume, weights_only=True))
+        saved = torch.load(resume, weights_only=True) if resume.exists() else None
+        config = NetworkConfig(**saved["network"]) if saved else NetworkConfig()
+        self.model = LocalNet(config).to(memory_format=torch.channels_last)
+        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=1e-4)
+        self.ema, self.losses = Ema(self.model), LossOptions()
+        if saved:
+            self._restore(saved)
 
     def _restore(self, saved: dict) -> None:
         self.model.load_state_dict(saved.get("model", saved["ema"]))
