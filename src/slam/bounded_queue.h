@@ -26,6 +26,11 @@ class BoundedQueue {
     changed_.notify_all();
     return true;
   }
+  /// Whether push() would not wait; with a single producer this stays true until its next push.
+  bool has_room() {
+    const std::lock_guard lock(mutex_);
+    return items_.size() < capacity_;
+  }
   /// Returns false, dropping the item, if there is no room now or the queue is closed.
   bool try_push(T item) {
     std::unique_lock lock(mutex_);

@@ -23,7 +23,9 @@ TEST(BoundedQueue, KeepsOrderAcrossThreads) {
 
 TEST(BoundedQueue, RefusesWhenFullOrClosed) {
   BoundedQueue<int> queue(1);
+  EXPECT_TRUE(queue.has_room());
   EXPECT_TRUE(queue.try_push(1));
+  EXPECT_FALSE(queue.has_room());
   EXPECT_FALSE(queue.try_push(2));
   queue.close();
   EXPECT_FALSE(queue.push(3));

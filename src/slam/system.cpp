@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/options.h"
+#include "slam/thread_priority.h"
 
 namespace dxslam {
 namespace {
@@ -31,14 +32,12 @@ System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor
       on_frame_(std::move(on_frame)),
       tracker_(camera, extractor_->traits(), options.tracking),
       backend_(camera, *extractor_, options_),
-      images_(static_cast<std::size_t>(options.queued_frames)),
       extracted_(static_cast<std::size_t>(options.queued_frames)),
       tasks_(static_cast<std::size_t>(options.queued_keyframes)) {
   camera_.validate("calibration");
   mapping_ = options_.mode == "slam";
   extractor_->keep_encoder(true);
   if (options_.deterministic) return;
-  threads_.emplace_back([this] { guard(&System::run_extraction); });
   threads_.emplace_back([this] { guard(&System::run_tracking); });
   threads_.emplace_back([this] { guard(&System::run_mapping); });
 }
@@ -72,13 +71,13 @@ System::Incoming System::incoming(const RgbdImage& image) {
 }
 
 void System::process(const RgbdImage& image) {
-  Incoming next = incoming(image);
+  Extracted extracted = extract(incoming(image));
   if (!options_.deterministic) {
-    images_.push(std::move(next));
+    extracted_.push(std::move(extracted));
     rethrow();
     return;
   }
-  const std::optional<KeyframeRequest> request = track(extract(next));
+  const std::optional<KeyframeRequest> request = track(extracted);
   if (request) map_keyframe(*request);
 }
 
@@ -88,18 +87,16 @@ bool System::try_process(const RgbdImage& image) {
     return true;
   }
   live_ = true;
-  Incoming next = incoming(image);
-  const bool begins = next.begins_sequence;
-  const bool taken = images_.try_push(std::move(next));
-  if (!taken) next_begins_sequence_ = begins;
   rethrow();
-  return taken;
+  if (!extracted_.has_room()) return false;
+  process(image);
+  return true;
 }
 
 void System::finish() {
   if (finished_) return;
   finished_ = true;
-  images_.close();  // each thread closes the queue behind it when its own runs dry
+  extracted_.close();  // each thread closes the queue behind it when its own runs dry
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
   rethrow();
@@ -261,13 +258,6 @@ LocalMapPtr System::newest_local_map() {
   return std::exchange(published_, nullptr);
 }
 
-void System::run_extraction() {
-  while (std::optional<Incoming> next = images_.pop()) {
-    if (!extracted_.push(extract(*next))) break;
-  }
-  extracted_.close();
-}
-
 void System::run_tracking() {
   while (std::optional<Extracted> extracted = extracted_.pop()) {
     std::optional<KeyframeRequest> request = track(*extracted);
@@ -288,6 +278,7 @@ void System::run_tracking() {
 }
 
 void System::run_mapping() {
+  lower_thread_priority(options_.mapping_niceness);
   while (const std::optional<Task> task = tasks_.pop()) (*task)();
 }
 
@@ -304,7 +295,6 @@ void System::guard(void (System::*body)()) {
 }
 
 void System::close_queues() {
-  images_.close();
   extracted_.close();
   tasks_.close();
   const std::lock_guard lock(local_map_mutex_);

@@ -49,8 +49,10 @@ struct MapSize {
   std::size_t points = 0;
 };
 
-/// The whole system (paper, Fig. 1): feature extraction, tracking, and mapping with loop closing
-/// and relocalization, each in its own thread, joined by bounded queues. In deterministic mode the
+/// The whole system (paper, Fig. 1): feature extraction in the caller's thread, tracking, and
+/// mapping with loop closing and relocalization, in threads of their own, joined by bounded queues.
+/// Extracting where images come from leaves the processors to it: read ahead in another thread if
+/// there are processors to spare. In deterministic mode the
 /// same steps run one after another in the caller's thread, and equal input gives equal output to
 /// the bit.
 ///
@@ -80,10 +82,11 @@ class System {
   /// The next image is of another recording: it may be anywhere in the map.
   void begin_sequence() { next_begins_sequence_ = true; }
 
-  /// Takes the next image in time order; waits while the queue is full.
+  /// Takes the next image in time order. Extracts its features in the calling thread, while the one
+  /// before is tracked, and waits while tracking is `queued_frames` behind.
   void process(const RgbdImage& image);
-  /// The same for live input: returns false, dropping the image, instead of waiting; mapping never
-  /// holds up tracking.
+  /// The same for live input: returns false, dropping the image, if tracking is that far behind;
+  /// mapping never holds up tracking.
   bool try_process(const RgbdImage& image);
   /// Waits until all is done, adjusts the whole map if so configured, and stops the threads. Only
   /// then may the results below be read. Further calls do nothing.
@@ -143,7 +146,6 @@ class System {
   std::optional<std::uint32_t> component_of(const TrackedFrame& frame) const;
   bool has_error();
 
-  void run_extraction();
   void run_tracking();
   void run_mapping();
   void guard(void (System::*body)());
@@ -169,7 +171,6 @@ class System {
   bool map_loaded_ = false;
   std::atomic<bool> mapping_{true};
 
-  BoundedQueue<Incoming> images_;
   BoundedQueue<Extracted> extracted_;
   BoundedQueue<Task> tasks_;
   std::mutex local_map_mutex_;
