@@ -86,16 +86,16 @@ std::vector<LoopCandidate> LoopDetector::rank(const BowVector& bow,
       candidate.id = match.id;
       candidate.bow_score = match.score;
       candidate.confidence = match.score;
-      if (places_.has_global(match.id) && !global.empty()) {
-        candidate.global_distance = places_.distance_to(match.id, global);
+      if (places_.globals().contains(match.id) && !global.empty()) {
+        candidate.global_distance = places_.globals().compare(match.id, global).distance();
       }
       candidates.push_back(candidate);
     }
   } else {
-    for (const GlobalMatch& match : places_.by_global(global, wanted, excluded)) {
+    for (const GlobalMatch& match : places_.globals().query(global, wanted, excluded)) {
       LoopCandidate candidate;
       candidate.id = match.id;
-      candidate.global_distance = match.distance;
+      candidate.global_distance = match.distance();
       candidates.push_back(candidate);
     }
   }

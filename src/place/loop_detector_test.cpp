@@ -171,20 +171,20 @@ TEST(PlaceDatabase, ForgetsRemovedPlaces) {
   places.add(9, words({2}), direction(50));
   EXPECT_THROW(places.add(9, {}, {}), ContractError);
   EXPECT_THROW(places.add(5, {}, {1.0F}), ContractError);
-  EXPECT_FALSE(places.has_global(7));
+  EXPECT_FALSE(places.globals().contains(7));
   places.remove(7);
   places.remove(100);
   EXPECT_EQ(places.size(), 2U);
-  EXPECT_NEAR(places.distance_to(8, direction(0)), chord(20), 1e-6);
-  EXPECT_NEAR(places.distance_to(9, direction(0)), chord(50), 1e-6);
-  EXPECT_THROW(places.distance_to(7, direction(0)), ContractError);
+  EXPECT_NEAR(places.globals().compare(8, direction(0)).distance(), chord(20), 1e-6);
+  EXPECT_NEAR(places.globals().compare(9, direction(0)).distance(), chord(50), 1e-6);
+  EXPECT_THROW(places.globals().compare(7, direction(0)), ContractError);
   places.remove(8);
-  const auto nearest = places.by_global(direction(0), 5);
+  const auto nearest = places.globals().query(direction(0), 5);
   ASSERT_EQ(nearest.size(), 1U);
   EXPECT_EQ(nearest[0].id, 9U);
   ASSERT_EQ(places.by_words(words({1, 2}), 5).size(), 1U);
   places.add(7, words({1}), direction(1));
-  EXPECT_EQ(places.by_global(direction(0), 1)[0].id, 7U);
+  EXPECT_EQ(places.globals().query(direction(0), 1)[0].id, 7U);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void fill_up(const Map& map, std::size_t size, KeyframeGroup& group) {
 }  // namespace
 
 std::vector<KeyframeGroup> group_by_covisibility(const Map& map,
-                                                 const std::vector<SimilarKeyframe>& candidates,
+                                                 const std::vector<GlobalMatch>& candidates,
                                                  int min_shared, std::size_t size) {
   std::vector<KeyframeGroup> groups;
   std::vector<char> grouped(candidates.size(), 0);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "map/map.h"
-#include "relocalization/global_index.h"
+#include "place/global_index.h"
 
 namespace dxslam {
 
@@ -22,7 +22,7 @@ struct KeyframeGroup {
 /// members are filled up with the best covisible keyframes of their first; of larger ones the
 /// best `size` stay, and the others are in no group. By falling promise.
 std::vector<KeyframeGroup> group_by_covisibility(const Map& map,
-                                                 const std::vector<SimilarKeyframe>& candidates,
+                                                 const std::vector<GlobalMatch>& candidates,
                                                  int min_shared, std::size_t size);
 
 }  // namespace dxslam

@@ -27,7 +27,7 @@ class KeyframeGroups : public testing::Test {
 };
 
 TEST_F(KeyframeGroups, NeighboursGoTogetherAndComponentsApart) {
-  const std::vector<SimilarKeyframe> candidates = {
+  const std::vector<GlobalMatch> candidates = {
       {first_[0], 0.9F}, {second_[3], 0.8F}, {first_[1], 0.7F}, {second_[4], 0.6F}};
   const std::vector<KeyframeGroup> groups = group_by_covisibility(map_, candidates, 20, 2);
   ASSERT_EQ(groups.size(), 2U);
@@ -38,11 +38,11 @@ TEST_F(KeyframeGroups, NeighboursGoTogetherAndComponentsApart) {
 }
 
 TEST_F(KeyframeGroups, ManyGoodCandidatesBeatASingleBestOne) {
-  const std::vector<SimilarKeyframe> candidates = {{second_[0], 0.85F},
-                                                   {first_[0], 0.8F},
-                                                   {first_[1], 0.8F},
-                                                   {first_[2], 0.8F},
-                                                   {second_[7], 0.1F}};
+  const std::vector<GlobalMatch> candidates = {{second_[0], 0.85F},
+                                               {first_[0], 0.8F},
+                                               {first_[1], 0.8F},
+                                               {first_[2], 0.8F},
+                                               {second_[7], 0.1F}};
   const std::vector<KeyframeGroup> groups = group_by_covisibility(map_, candidates, 20, 3);
   ASSERT_GE(groups.size(), 2U);
   EXPECT_EQ(groups[0].component, 0U);
@@ -57,7 +57,7 @@ TEST_F(KeyframeGroups, ASmallGroupIsFilledUpWithCovisibles) {
 }
 
 TEST_F(KeyframeGroups, ALargeGroupIsCutAndItsRestMakesNoOther) {
-  std::vector<SimilarKeyframe> candidates;
+  std::vector<GlobalMatch> candidates;
   for (std::size_t i = 0; i < 5; ++i) candidates.push_back({first_[i], 0.9F - 0.1F * i});
   const std::vector<KeyframeGroup> groups = group_by_covisibility(map_, candidates, 1, 2);
   ASSERT_EQ(groups.size(), 1U);

@@ -154,7 +154,7 @@ RelocalizationReport Relocalizer::relocalize(const Map& map, const GlobalIndex& 
 }
 
 RelocalizationReport Relocalizer::relocalize(const Map& map,
-                                             const std::vector<SimilarKeyframe>& candidates,
+                                             const std::vector<GlobalMatch>& candidates,
                                              const Frame& frame) const {
   const std::vector<KeyframeGroup> groups = group_by_covisibility(
       map, candidates, options_.min_shared, static_cast<std::size_t>(options_.group_keyframes));

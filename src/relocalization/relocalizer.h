@@ -8,7 +8,7 @@
 #include "core/features.h"
 #include "core/frame.h"
 #include "map/map.h"
-#include "relocalization/global_index.h"
+#include "place/global_index.h"
 #include "relocalization/relocalization_options.h"
 
 namespace dxslam {
@@ -57,7 +57,7 @@ class Relocalizer {
   RelocalizationReport relocalize(const Map& map, const GlobalIndex& index,
                                   const Frame& frame) const;
   /// With candidates from elsewhere (a bag of words), best first.
-  RelocalizationReport relocalize(const Map& map, const std::vector<SimilarKeyframe>& candidates,
+  RelocalizationReport relocalize(const Map& map, const std::vector<GlobalMatch>& candidates,
                                   const Frame& frame) const;
 
   const RelocalizationOptions& options() const { return options_; }

@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
-#include "relocalization/global_index.h"
+#include "place/global_index.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "matching/descriptor_distance.h"
 
 namespace dxslam {
+namespace {
+
+float similarity_of(const cv::Mat& rows, int row, const cv::Mat& wanted) {
+  const float distance = descriptor_distance(rows, row, wanted, 0);
+  return 1.0F - 0.5F * distance * distance;
+}
+
+}  // namespace
+
+double GlobalMatch::distance() const {
+  return std::sqrt(std::max(0.0, 2.0 - 2.0 * static_cast<double>(similarity)));
+}
 
 void GlobalIndex::add(std::uint32_t id, const std::vector<float>& descriptor) {
   require(!descriptor.empty(), "a global descriptor to index must not be empty");
@@ -43,32 +56,43 @@ bool GlobalIndex::remove(std::uint32_t id) {
   return true;
 }
 
+// cv::Mat has no view of constant data; nothing is written through these.
 cv::Mat GlobalIndex::matrix() const {
-  // cv::Mat has no view of constant data; nothing is written through it.
   return {static_cast<int>(ids_.size()), dimension_, CV_32F, const_cast<float*>(rows_.data())};
 }
 
-std::vector<SimilarKeyframe> GlobalIndex::query(const std::vector<float>& descriptor,
-                                                std::size_t k) const {
-  std::vector<SimilarKeyframe> matches;
-  if (descriptor.empty() || ids_.empty()) return matches;
+cv::Mat GlobalIndex::as_row(const std::vector<float>& descriptor) const {
   require(static_cast<int>(descriptor.size()) == dimension_,
-          "a global descriptor to look for must have the dimension of the index");
+          "a global descriptor to compare must have the dimension of the index");
+  return {1, dimension_, CV_32F, const_cast<float*>(descriptor.data())};
+}
+
+std::vector<GlobalMatch> GlobalIndex::query(const std::vector<float>& descriptor, std::size_t k,
+                                            const PlaceExclusion& excluded) const {
+  std::vector<GlobalMatch> matches;
+  if (descriptor.empty() || ids_.empty()) return matches;
   const cv::Mat rows = matrix();
-  const cv::Mat wanted(1, dimension_, CV_32F, const_cast<float*>(descriptor.data()));
+  const cv::Mat wanted = as_row(descriptor);
   matches.reserve(ids_.size());
   for (int row = 0; row < rows.rows; ++row) {
-    const float distance = descriptor_distance(rows, row, wanted, 0);
-    matches.push_back({ids_[static_cast<std::size_t>(row)], 1.0F - 0.5F * distance * distance});
+    const std::uint32_t id = ids_[static_cast<std::size_t>(row)];
+    if (excluded && excluded(id)) continue;
+    matches.push_back({id, similarity_of(rows, row, wanted)});
   }
   k = std::min(k, matches.size());
   std::partial_sort(matches.begin(), matches.begin() + static_cast<std::ptrdiff_t>(k),
-                    matches.end(), [](const SimilarKeyframe& a, const SimilarKeyframe& b) {
+                    matches.end(), [](const GlobalMatch& a, const GlobalMatch& b) {
                       return a.similarity != b.similarity ? a.similarity > b.similarity
                                                           : a.id < b.id;
                     });
   matches.resize(k);
   return matches;
+}
+
+GlobalMatch GlobalIndex::compare(std::uint32_t id, const std::vector<float>& descriptor) const {
+  const auto found = row_of_.find(id);
+  require(found != row_of_.end(), "an image to compare with must have a global descriptor");
+  return {id, similarity_of(matrix(), static_cast<int>(found->second), as_row(descriptor))};
 }
 
 }  // namespace dxslam

@@ -2,21 +2,30 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <unordered_map>
 #include <vector>
 
 namespace dxslam {
 
-/// Something stored and how much it looks like what was asked for.
-struct SimilarKeyframe {
+/// Places that must not be found, e.g. those covisible with the query; empty = none.
+using PlaceExclusion = std::function<bool(std::uint32_t id)>;
+
+/// A stored image and how much it looks like what was asked for.
+struct GlobalMatch {
   std::uint32_t id = 0;
-  float similarity = 0.0F;  ///< dot product of the unit vectors, -1 to 1; 1: equal
+  float similarity = 0.0F;  ///< inner product of the unit vectors, -1 to 1; 1: equal
+
+  /// L2 distance of the two descriptors, 0 to 2: from their inner product, as the paper has it
+  /// (III.E).
+  double distance() const;
 };
 
-/// Global image descriptors by id (paper III.D: candidates of relocalization). Every query compares
-/// with all of them, which at 512 floats takes less than a millisecond for ten thousand.
+/// Global image descriptors by id (paper III.D and III.E): candidates of relocalization and of loop
+/// closing. Every query compares with all of them: docs/relocalization.md has the time that takes.
 /// One thread may change it; any number may query while none does.
 class GlobalIndex {
  public:
@@ -31,10 +40,15 @@ class GlobalIndex {
   int dimension() const { return dimension_; }
 
   /// The `k` most similar, best first (ties: smaller id first). None for an empty descriptor.
-  std::vector<SimilarKeyframe> query(const std::vector<float>& descriptor, std::size_t k) const;
+  /// Throws ContractError for one of another dimension.
+  std::vector<GlobalMatch> query(const std::vector<float>& descriptor, std::size_t k,
+                                 const PlaceExclusion& excluded = {}) const;
+  /// How alike one image is. Throws ContractError if it is not there or of another dimension.
+  GlobalMatch compare(std::uint32_t id, const std::vector<float>& descriptor) const;
 
  private:
   cv::Mat matrix() const;
+  cv::Mat as_row(const std::vector<float>& descriptor) const;
 
   int dimension_ = 0;
   std::vector<float> rows_;         // row by row

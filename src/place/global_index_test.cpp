@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
-#include "relocalization/global_index.h"
+#include "place/global_index.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ TEST(GlobalIndex, FindsWhatAPlainSearchFinds) {
   std::vector<std::pair<float, std::uint32_t>> expected;
   for (std::uint32_t id = 0; id < 200; ++id) expected.emplace_back(-dot(stored[id], wanted), id);
   std::sort(expected.begin(), expected.end());
-  const std::vector<SimilarKeyframe> found = index.query(wanted, 10);
+  const std::vector<GlobalMatch> found = index.query(wanted, 10);
   ASSERT_EQ(found.size(), 10U);
   for (std::size_t i = 0; i < 10; ++i) {
     EXPECT_EQ(found[i].id, expected[i].second) << i;
@@ -64,7 +64,7 @@ TEST(GlobalIndex, ForgetsWhatIsRemovedAndKeepsTheRest) {
   EXPECT_FALSE(index.remove(7));
   EXPECT_EQ(index.size(), 33U);
   for (std::uint32_t id = 0; id < 50; ++id) {
-    const std::vector<SimilarKeyframe> found = index.query(stored[id], 1);
+    const std::vector<GlobalMatch> found = index.query(stored[id], 1);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found.front().id == 1000 + id, id % 3 != 0) << id;
     EXPECT_EQ(index.contains(1000 + id), id % 3 != 0) << id;
@@ -82,11 +82,32 @@ TEST(GlobalIndex, ADescriptorAddedAgainReplacesTheOldOne) {
 TEST(GlobalIndex, EqualSimilaritiesComeByRisingId) {
   GlobalIndex index;
   for (const std::uint32_t id : {9U, 2U, 5U}) index.add(id, {0.6F, 0.8F});
-  const std::vector<SimilarKeyframe> found = index.query({1.0F, 0.0F}, 3);
+  const std::vector<GlobalMatch> found = index.query({1.0F, 0.0F}, 3);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0].id, 2U);
   EXPECT_EQ(found[1].id, 5U);
   EXPECT_EQ(found[2].id, 9U);
+}
+
+TEST(GlobalIndex, LeavesOutWhatIsExcluded) {
+  GlobalIndex index;
+  for (const std::uint32_t id : {1U, 2U, 3U}) index.add(id, {0.6F, 0.8F});
+  const auto found = index.query({1.0F, 0.0F}, 3, [](std::uint32_t id) { return id != 2; });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().id, 2U);
+}
+
+TEST(GlobalIndex, ComparesWithOneAsAmongAll) {
+  std::mt19937 random(5);
+  GlobalIndex index;
+  for (std::uint32_t id = 0; id < 5; ++id) index.add(id, random_unit(random, 64));
+  const std::vector<float> wanted = random_unit(random, 64);
+  for (const GlobalMatch& match : index.query(wanted, 5)) {
+    EXPECT_EQ(index.compare(match.id, wanted).similarity, match.similarity);
+    EXPECT_NEAR(match.distance() * match.distance(), 2.0 - 2.0 * match.similarity, 1e-6);
+  }
+  EXPECT_THROW(index.compare(9, wanted), ContractError);
+  EXPECT_THROW(index.compare(0, {1.0F}), ContractError);
 }
 
 TEST(GlobalIndex, IsAskedForMoreThanItHasOrWithNothing) {

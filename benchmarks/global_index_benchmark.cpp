@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+//
+// How long a question to the index of global descriptors takes: 20 candidates out of all keyframes.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+
+#include "place/global_index.h"
+
+namespace {
+
+using dxslam::GlobalIndex;
+
+std::vector<float> random_unit(std::mt19937& random, std::size_t dimension) {
+  std::normal_distribution<float> normal;
+  std::vector<float> v(dimension);
+  float square = 0.0F;
+  for (float& x : v) {
+    x = normal(random);
+    square += x * x;
+  }
+  for (float& x : v) x /= std::sqrt(square);
+  return v;
+}
+
+void query(benchmark::State& state) {
+  const auto keyframes = static_cast<std::uint32_t>(state.range(0));
+  const auto dimension = static_cast<std::size_t>(state.range(1));
+  std::mt19937 random(1);
+  GlobalIndex index;
+  for (std::uint32_t id = 0; id < keyframes; ++id) index.add(id, random_unit(random, dimension));
+  const std::vector<float> wanted = random_unit(random, dimension);
+  for (auto _ : state) benchmark::DoNotOptimize(index.query(wanted, 20));
+}
+BENCHMARK(query)
+    ->ArgsProduct({{1000, 10000, 50000, 100000}, {256, 512}})
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
