@@ -127,6 +127,30 @@ class Commands(Saved):
         report = self.info(self.first)
         self.assertIn(f"element vertex {report['points'] + report['keyframes']}\n", header)
 
+    def test_thumbnails_are_those_of_the_keyframes(self):
+        """Made on demand, kept when the map grows without them, and written out by name."""
+        first, grown = self.folder / "pictures.dxmap", self.folder / "grown.dxmap"
+        recording = self.folder / "recording"
+        for out, options in ((first, ["--thumbnails", "--max-frames", FRAMES // 2]),
+                             (grown, ["--map-in", first])):
+            self.succeed(dxslam("run", recording, "--features", "orb", "--map-out", out, *options))
+        report = self.info(first)
+        self.assertEqual(report["thumbnails"], report["keyframes"])
+        self.assertGreater(self.info(grown)["thumbnails"], 0)
+        self.assertEqual(self.info(self.first)["thumbnails"], 0)
+        folder = self.folder / "colmap_pictures"
+        self.succeed(dxslam("map", "export", first, "--colmap", folder))
+        names = re.findall(r" 1 (\S+)\.png$", (folder / "0" / "images.txt").read_text(), re.M)
+        pictures = sorted((folder / "0" / "thumbnails").iterdir())
+        self.assertEqual([picture.stem for picture in pictures], sorted(names))
+        for picture in pictures:
+            data = picture.read_bytes()
+            self.assertEqual((data[:2], data[-2:]), (b"\xff\xd8", b"\xff\xd9"))
+            self.assertLess(len(data), 20000)
+
+    def test_thumbnails_need_a_map_to_be_put_into(self):
+        self.refuse(dxslam("run", self.folder / "recording", "--thumbnails"), "--map-out")
+
     def test_colmap_model_is_consistent(self):
         folder = self.folder / "colmap"
         self.succeed(dxslam("map", "export", self.first, "--colmap", folder))

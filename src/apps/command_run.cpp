@@ -12,6 +12,7 @@
 #include "apps/run_output.h"
 #include "apps/run_settings.h"
 #include "apps/system_setup.h"
+#include "apps/thumbnails.h"
 #include "features/extractor_factory.h"
 #include "io/low_light.h"
 #include "io/trajectory_file.h"
@@ -54,7 +55,8 @@ class RealTimePace {
   double first_stamp_ = -1.0;
 };
 
-void feed(const RunSettings& settings, RgbdSequence& sequence, System& system, RunRecord& record) {
+void feed(const RunSettings& settings, RgbdSequence& sequence, System& system,
+          Thumbnails& thumbnails, RunRecord& record) {
   const std::optional<LowLight> low_light =
       settings.low_light ? std::optional<LowLight>(LowLight(*settings.low_light)) : std::nullopt;
   RealTimePace pace;
@@ -68,6 +70,7 @@ void feed(const RunSettings& settings, RgbdSequence& sequence, System& system, R
     ++record.frames_offered;
     if (!image) continue;
     if (low_light) image->color = low_light->apply(image->color, image->index);
+    thumbnails.offer(*image);
     if (!settings.realtime) {
       system.process(*image);
       continue;
@@ -103,21 +106,15 @@ void print_outcome(const RunSettings& settings, const RunRecord& record,
   if (!settings.out.empty()) fmt::print("results in {}\n", settings.out);
 }
 
-void prepare_map(const RunSettings& settings, const SystemOptions& options, const MapHeader& header,
-                 AutoSaver& saver, System& system) {
+void check_map_settings(const RunSettings& settings, const SystemOptions& options) {
   if (options.mode == "localization" && settings.map_in.empty()) {
     throw InputError("mode localization has no map, expected --map-in FILE");
-  }
-  if (!settings.map_in.empty()) {
-    load_map_into(system, settings.map_in, header, options.mode == "slam");
   }
   if (settings.autosave > 0 && settings.map_out.empty()) {
     throw InputError("--autosave has nowhere to save to, expected --map-out FILE");
   }
-  if (settings.autosave > 0) {
-    system.set_autosave(
-        settings.autosave,
-        [&saver](const Map& map, const std::vector<LoopEdge>& loops) { saver.save(map, loops); });
+  if (settings.thumbnails && settings.map_out.empty()) {
+    throw InputError("--thumbnails has no map to be put into, expected --map-out FILE");
   }
 }
 
@@ -125,6 +122,7 @@ int run(const RunSettings& settings) {
   const Stopwatch startup;
   catch_signals();
   const SystemOptions options = options_of(settings);
+  check_map_settings(settings, options);
   const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, settings.reader);
   std::unique_ptr<TrajectoryWriter> writer;
   if (!settings.out.empty()) {
@@ -134,25 +132,38 @@ int run(const RunSettings& settings) {
   }
   Progress progress("frames", planned_frames(settings, *sequence));
   std::size_t done = 0;
+  RunRecord record;
+  std::optional<Thumbnails> thumbnails;
   System system(sequence->camera(), make_extractor(options.features, options.extractor), options,
                 [&](const TrackedFrame& frame) {
-                  if (writer && frame.state == TrackingState::kTracking) {
-                    writer->append({frame.stamp, frame.world_from_camera});
+                  thumbnails->note(frame);
+                  if (frame.state == TrackingState::kTracking) {
+                    if (!record.first_pose_ms) record.first_pose_ms = startup.ms();
+                    if (writer) writer->append({frame.stamp, frame.world_from_camera});
                   }
                   progress.update(++done, state_name(frame.state));
                 });
   const MapHeader header = map_header(sequence->camera(), system.extractor());
+  std::vector<std::string> stored;
+  if (!settings.map_in.empty()) {
+    stored = load_map_into(system, settings.map_in, header, options.mode == "slam");
+  }
+  thumbnails.emplace(settings.thumbnails, std::move(stored));
   AutoSaver saver(settings.map_out, header);
-  prepare_map(settings, options, header, saver, system);
-  RunRecord record;
+  if (settings.autosave > 0) {
+    system.set_autosave(settings.autosave, [&](const Map& map, const std::vector<LoopEdge>& loops) {
+      saver.save(map, loops, thumbnails->of(map));
+    });
+  }
   record.startup_ms = startup.ms();
   const Stopwatch wall;
-  feed(settings, *sequence, system, record);
+  feed(settings, *sequence, system, *thumbnails, record);
   record.wall_s = wall.ms() / 1000.0;
   progress.finish();
   if (!settings.map_out.empty()) {
     saver.finish();
-    save_system_map(settings.map_out, header, system.map(), system.backend().closed_loops());
+    save_system_map(settings.map_out, header, system.map(), system.backend().closed_loops(),
+                    thumbnails->of(system.map()));
   }
   if (!settings.out.empty()) {
     write_results(settings.out, settings, record, options, *sequence, system);
@@ -187,6 +198,8 @@ void add_run_command(CLI::App& app) {
       ->add_option("--autosave", settings->autosave,
                    "Save it after every so many keyframes as well, not only at the end")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--thumbnails", settings->thumbnails,
+                    "Put small pictures of the keyframes into it, 3 to 6 KiB each");
   command->add_option("--vocabulary", settings->vocabulary,
                       "FBoW or DBoW2 file; none: loops by global descriptor alone");
   command->add_flag("--no-loop-closing", settings->no_loop_closing, "Do not look for loops");

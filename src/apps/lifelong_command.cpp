@@ -136,8 +136,9 @@ int run(const LifelongSettings& settings) {
                   progress.update(++done, tracking ? "tracking" : "lost");
                 });
   const MapHeader header = map_header(sequences.front()->camera(), system.extractor());
+  std::vector<std::string> thumbnails;
   if (!settings.map_in.empty()) {
-    load_map_into(system, settings.map_in, header, options.mode == "slam");
+    thumbnails = load_map_into(system, settings.map_in, header, options.mode == "slam");
   }
   std::vector<Visit> visits;
   for (std::size_t v = 0; v < sequences.size(); ++v) {
@@ -149,7 +150,8 @@ int run(const LifelongSettings& settings) {
   system.finish();
   progress.finish();
   if (!settings.map_out.empty()) {
-    save_system_map(settings.map_out, header, system.map(), system.backend().closed_loops());
+    save_system_map(settings.map_out, header, system.map(), system.backend().closed_loops(),
+                    thumbnails);
   }
   collect_online_poses(system, visits);
   write_lifelong(settings, system, visits);

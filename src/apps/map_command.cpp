@@ -221,7 +221,7 @@ void add_map_command(CLI::App& app) {
       ->option_text("FILE");
   exporting
       ->add_option("--colmap", arguments->colmap,
-                   "COLMAP text files, one subfolder for each component")
+                   "COLMAP text files and thumbnails, one subfolder for each component")
       ->option_text("DIR");
   exporting->add_option("--thumbnails", arguments->thumbnails, "pictures of the keyframes")
       ->option_text("DIR");

@@ -28,28 +28,33 @@ MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor) {
   return {camera, extractor.name(), extractor.model_hash(), extractor.traits()};
 }
 
-void load_map_into(System& system, const std::string& path, const MapHeader& current, bool grows) {
+std::vector<std::string> load_map_into(System& system, const std::string& path,
+                                       const MapHeader& current, bool grows) {
   StoredMap stored = load_map(path);
   require_same_features(stored.header, current, path);
   if (grows) require_same_camera(stored.header, current, path);
+  stored.thumbnails.resize(stored.map.keyframe_ids().back() + std::size_t{1});
   system.load_map(std::move(stored.map), loop_edges(stored.loops));
+  return std::move(stored.thumbnails);
 }
 
 void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
-                     const std::vector<LoopEdge>& loops) {
-  save_map(path, take_snapshot(header, map, stored_loops(map, loops)));
+                     const std::vector<LoopEdge>& loops,
+                     const std::vector<std::string>& thumbnails) {
+  save_map(path, take_snapshot(header, map, stored_loops(map, loops), thumbnails));
 }
 
-void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops) {
+void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops,
+                     const std::vector<std::string>& thumbnails) {
   if (under_way_.valid()) {
     if (under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     under_way_.get();
   }
-  under_way_ =
-      std::async(std::launch::async,
-                 [path = path_, snapshot = take_snapshot(header_, map, stored_loops(map, loops))] {
-                   save_map(path, snapshot);
-                 });
+  under_way_ = std::async(
+      std::launch::async,
+      [path = path_, snapshot = take_snapshot(header_, map, stored_loops(map, loops), thumbnails)] {
+        save_map(path, snapshot);
+      });
 }
 
 void AutoSaver::finish() {

@@ -22,11 +22,14 @@ std::vector<StoredLoopEdge> stored_loops(const Map& map, const std::vector<LoopE
 std::vector<LoopEdge> loop_edges(const std::vector<StoredLoopEdge>& stored);
 
 /// Reads a map file and hands it to the system. Throws InputError if it is damaged or was made with
-/// other features, or, where the map is to grow, with another camera.
-void load_map_into(System& system, const std::string& path, const MapHeader& current, bool grows);
+/// other features, or, where the map is to grow, with another camera. Returns the pictures in it,
+/// one for each of its keyframes' ids; empty strings where there is none.
+std::vector<std::string> load_map_into(System& system, const std::string& path,
+                                       const MapHeader& current, bool grows);
 
 void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
-                     const std::vector<LoopEdge>& loops);
+                     const std::vector<LoopEdge>& loops,
+                     const std::vector<std::string>& thumbnails);
 
 /// Saves a map in a thread of its own, so that mapping need not wait for the disk. While one save
 /// is under way further ones are left out.
@@ -34,7 +37,8 @@ class AutoSaver {
  public:
   AutoSaver(std::string path, MapHeader header) : path_(std::move(path)), header_(header) {}
   /// Copies the map and returns. Throws what an earlier save threw.
-  void save(const Map& map, const std::vector<LoopEdge>& loops);
+  void save(const Map& map, const std::vector<LoopEdge>& loops,
+            const std::vector<std::string>& thumbnails);
   /// Waits for the save under way.
   void finish();
 

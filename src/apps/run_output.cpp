@@ -145,6 +145,8 @@ Json summarise(const RunSettings& settings, const RunRecord& record, const Syste
   summary["mode"] = options.mode;
   summary["stages"] = stage_table(system);
   summary["startup_ms"] = rounded(record.startup_ms, 1e-3);
+  summary["first_pose_ms"] =
+      record.first_pose_ms ? Json(rounded(*record.first_pose_ms, 1e-3)) : Json(nullptr);
   summary["wall_s"] = rounded(record.wall_s, 1e-3);
   summary["frames_per_second"] = rounded(record.wall_s > 0.0 ? offered / record.wall_s : 0.0, 1e-2);
   summary["peak_memory_mib"] = rounded(peak_memory_mib(), 0.1);

@@ -45,6 +45,23 @@ std::string image_name(const Keyframe& k, std::set<std::string>& taken) {
   return name;
 }
 
+void make_folders(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError(
+        fmt::format("{}: folder cannot be made: {}", folder.string(), error.message()));
+  }
+}
+
+void write_thumbnail(const std::filesystem::path& folder, const StoredMap& stored, KeyframeId id,
+                     const std::string& name) {
+  if (id >= stored.thumbnails.size() || stored.thumbnails[id].empty()) return;
+  make_folders(folder);
+  std::filesystem::path file = folder / name;
+  write_file_atomically(file.replace_extension(".jpg").string(), stored.thumbnails[id]);
+}
+
 void append_image(const Keyframe& k, const Camera& camera, const std::string& name,
                   std::string& text) {
   const SE3 camera_from_world = k.world_from_camera.inverse();
@@ -113,23 +130,21 @@ void write_map_colmap(const std::string& folder, const StoredMap& stored) {
   const Map& map = stored.map;
   const Camera& camera = stored.header.camera;
   for (std::uint32_t component = 0; component < map.component_count(); ++component) {
+    const fs::path model = fs::path(folder) / std::to_string(component);
+    make_folders(model);
     std::string images = "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n# X Y POINT3D_ID ...\n";
     std::set<std::string> names;
     for (const KeyframeId id : map.keyframe_ids()) {
       const Keyframe& k = map.keyframe(id);
-      if (k.component == component) append_image(k, camera, image_name(k, names), images);
+      if (k.component != component) continue;
+      const std::string name = image_name(k, names);
+      append_image(k, camera, name, images);
+      write_thumbnail(model / "thumbnails", stored, id, name);
     }
     std::string points = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n";
     for (const PointId id : map.point_ids()) {
       const MapPoint& p = map.point(id);
       if (component_of(map, p) == component) append_point(map, p, camera, points);
-    }
-    const fs::path model = fs::path(folder) / std::to_string(component);
-    std::error_code error;
-    fs::create_directories(model, error);
-    if (error) {
-      throw InputError(
-          fmt::format("{}: folder cannot be made: {}", model.string(), error.message()));
     }
     write_file_atomically((model / "cameras.txt").string(), cameras_text(camera));
     write_file_atomically((model / "images.txt").string(), images);

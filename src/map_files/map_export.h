@@ -18,7 +18,9 @@ void write_map_ply(const std::string& path, const Map& map, std::uint32_t compon
 /// `folder`, one for each component, as COLMAP numbers its models. Keypoints are those of the
 /// original images, with the lens' distortion (model PINHOLE or FULL_OPENCV) and COLMAP's pixel
 /// centres at halves. Images are named by their stamps, as TUM recordings do (`STAMP.png`), with
-/// the keyframe's id behind where two would have the same name. Throws InputError if the files
+/// the keyframe's id behind where two would have the same name. Thumbnails, where the map has them,
+/// go to the folder `thumbnails` beside these files under the names of their images with `.jpg` in
+/// place of `.png`. Throws InputError if the files
 /// cannot be written.
 void write_map_colmap(const std::string& folder, const StoredMap& stored);
 

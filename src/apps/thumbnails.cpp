@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/thumbnails.h"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace dxslam::apps {
+namespace {
+
+constexpr int kWidth = 160;  // pixels
+constexpr int kQuality = 75;
+
+cv::Mat small_grey(const cv::Mat& image) {
+  cv::Mat grey = image;
+  if (image.channels() == 3) cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  if (grey.cols <= kWidth) return grey.clone();
+  cv::Mat small;
+  const int height = std::max(1, grey.rows * kWidth / grey.cols);
+  cv::resize(grey, small, cv::Size(kWidth, height), 0, 0, cv::INTER_AREA);
+  return small;
+}
+
+std::string jpeg_of(const cv::Mat& grey) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", grey, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+void Thumbnails::offer(const RgbdImage& image) {
+  if (!wanted_) return;
+  Small small{image.index, small_grey(image.color)};
+  const std::lock_guard lock(mutex_);
+  waiting_.push_back(std::move(small));
+}
+
+void Thumbnails::note(const TrackedFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  // Those before it were dropped.
+  while (!waiting_.empty() && waiting_.front().index < frame.index) waiting_.pop_front();
+  if (waiting_.empty() || waiting_.front().index != frame.index) return;
+  if (frame.is_keyframe) taken_[frame.index] = jpeg_of(waiting_.front().grey);
+  waiting_.pop_front();
+}
+
+std::vector<std::string> Thumbnails::of(const Map& map) const {
+  const std::lock_guard lock(mutex_);
+  const std::vector<KeyframeId> ids = map.keyframe_ids();
+  std::vector<std::string> all(ids.empty() ? 0 : ids.back() + std::size_t{1});
+  std::copy_n(stored_.begin(), std::min(stored_.size(), all.size()), all.begin());
+  for (const KeyframeId id : ids) {
+    if (id < stored_.size()) continue;
+    const auto found = taken_.find(map.keyframe(id).frame->index);
+    if (found != taken_.end()) all[id] = found->second;
+  }
+  const bool none = std::all_of(all.begin(), all.end(), [](const auto& t) { return t.empty(); });
+  return none ? std::vector<std::string>() : all;
+}
+
+}  // namespace dxslam::apps
