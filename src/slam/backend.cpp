@@ -24,7 +24,8 @@ Backend::Backend(const Camera& camera, FeatureExtractor& extractor, const System
       mapper_(camera, extractor.traits(), options.mapping),
       search_(make_search(options, extractor)),
       closer_(camera, extractor.traits(), options.loop_closing, options.deterministic),
-      relocalizer_(camera, extractor.traits(), options.relocalization) {}
+      relocalizer_(camera, extractor.traits(), options.relocalization),
+      consensus_(options.relocalization.consensus) {}
 
 void Backend::load(Map map, std::vector<LoopEdge> closed_loops) {
   require(mapper_.map().keyframe_count() == 0, "a map can only be loaded in place of an empty one");
@@ -122,7 +123,8 @@ RelocalizationAnswer Backend::relocalize(const Frame& frame) {
   asking.global = global_of(frame);
   RelocalizationAnswer answer;
   answer.report = relocalizer_.relocalize(map(), index_, asking);
-  if (answer.report.accepted) {
+  if (auto agreed = consensus_.add(frame.stamp, answer.report)) {
+    answer.report = std::move(*agreed);
     answer.local_map = mapper_.local_map_around(answer.report.reference);
   }
   return answer;

@@ -8,6 +8,7 @@
 #include "features/extractor.h"
 #include "loop_closing/loop_closer.h"
 #include "mapping/local_mapper.h"
+#include "relocalization/consensus.h"
 #include "relocalization/relocalizer.h"
 #include "slam/loop_search.h"
 #include "slam/system_options.h"
@@ -54,7 +55,10 @@ class Backend {
 
   /// Localization only: the local map around the keyframe that shares most points with the frame.
   LocalMapPtr follow(const KeyframeRequest& request);
+  /// By the frame alone, or by weak poses of frames in a row that agree.
   RelocalizationAnswer relocalize(const Frame& frame);
+  /// The next frame to be relocalized does not continue the last one.
+  void forget_weak_poses() { consensus_.reset(); }
 
   /// Ends what runs in the background and, if so configured, adjusts the whole map once more; a map
   /// that was only localized in stays as it is.
@@ -78,6 +82,7 @@ class Backend {
   LoopSearch search_;
   LoopCloser closer_;
   Relocalizer relocalizer_;
+  RelocalizationConsensus consensus_;
   GlobalIndex index_;
   MappingReport report_;
   bool grown_ = false;  // a keyframe was inserted, so there is something to adjust

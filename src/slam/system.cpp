@@ -154,6 +154,8 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted,
     tracker_.restart();
     newest_local_map();
     lost_frames_ = 0;
+    const std::lock_guard lock(map_mutex_);
+    backend_.forget_weak_poses();
   }
   TrackedFrame tracked;
   if (seeking_) {
@@ -173,7 +175,8 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted,
     seeking_ = false;
     return *found;
   }
-  if (++lost_frames_ >= options_.new_map_after && mapping_) {
+  if (says_something(*frame)) ++lost_frames_;
+  if (lost_frames_ >= options_.new_map_after && mapping_) {
     tracker_.restart();
     newest_local_map();
     lost_frames_ = 0;
@@ -184,7 +187,7 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted,
 
 std::optional<TrackedFrame> System::find_place(const FramePtr& frame,
                                                std::optional<KeyframeRequest>& request) {
-  const RelocalizationAnswer answer = ask_backend(frame);
+  const RelocalizationAnswer answer = relocalize(*frame);
   if (!answer.local_map) return std::nullopt;
   newest_local_map();  // of where tracking was before
   const TrackedFrame tracked = tracker_.resume(
@@ -193,23 +196,21 @@ std::optional<TrackedFrame> System::find_place(const FramePtr& frame,
   return tracked;
 }
 
-RelocalizationAnswer System::ask_backend(const FramePtr& frame) {
-  if (options_.deterministic) return relocalize(*frame);
-  const auto answer = std::make_shared<std::promise<RelocalizationAnswer>>();
-  std::future<RelocalizationAnswer> coming = answer->get_future();
-  if (!tasks_.push([this, frame, answer] { answer->set_value(relocalize(*frame)); })) return {};
-  // If mapping fails meanwhile, the promise is never kept; its error comes out of process().
-  while (coming.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
-    if (has_error()) return {};
-  }
-  return coming.get();
-}
-
+// In the thread that waits for it: mapping may run at a lower priority.
 RelocalizationAnswer System::relocalize(const Frame& frame) {
   const Stopwatch watch;
+  const std::lock_guard lock(map_mutex_);
+  if (!map_whole_) return {};
   RelocalizationAnswer answer = backend_.relocalize(frame);
   times_.add("relocalize", watch.ms());
   return answer;
+}
+
+// A covered lens or a bare wall is no reason to give up a map.
+bool System::says_something(const Frame& frame) const {
+  const auto with_depth = std::count_if(frame.depths.begin(), frame.depths.end(),
+                                        [](float depth) { return depth > 0.0F; });
+  return with_depth >= options_.tracking.min_start_points;
 }
 
 void System::map_keyframe(const KeyframeRequest& request) {
@@ -279,7 +280,12 @@ void System::run_tracking() {
 
 void System::run_mapping() {
   lower_thread_priority(options_.mapping_niceness);
-  while (const std::optional<Task> task = tasks_.pop()) (*task)();
+  while (const std::optional<Task> task = tasks_.pop()) {
+    const std::lock_guard lock(map_mutex_);
+    map_whole_ = false;
+    (*task)();
+    map_whole_ = true;
+  }
 }
 
 void System::guard(void (System::*body)()) {
@@ -300,11 +306,6 @@ void System::close_queues() {
   const std::lock_guard lock(local_map_mutex_);
   stopped_ = true;
   local_map_changed_.notify_all();
-}
-
-bool System::has_error() {
-  const std::lock_guard lock(error_mutex_);
-  return error_ != nullptr;
 }
 
 void System::rethrow() {

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <exception>
 #include <functional>
-#include <future>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -135,16 +134,15 @@ class System {
                                    std::optional<KeyframeRequest>& request);
   std::optional<TrackedFrame> find_place(const FramePtr& frame,
                                          std::optional<KeyframeRequest>& request);
-  RelocalizationAnswer ask_backend(const FramePtr& frame);
   void map_keyframe(const KeyframeRequest& request);
   RelocalizationAnswer relocalize(const Frame& frame);
+  bool says_something(const Frame& frame) const;
   void publish(LocalMapPtr local_map);
   LocalMapPtr newest_local_map();
   void count(const MappingReport& report);
   void hang_first_frames();
   void note_map_size();
   std::optional<std::uint32_t> component_of(const TrackedFrame& frame) const;
-  bool has_error();
 
   void run_tracking();
   void run_mapping();
@@ -170,6 +168,10 @@ class System {
   int lost_frames_ = 0;   // in a row
   bool map_loaded_ = false;
   std::atomic<bool> mapping_{true};
+
+  // Held while the map is changed; tracking takes it to relocalize.
+  std::mutex map_mutex_;
+  bool map_whole_ = true;  // guarded by map_mutex_; false once a change of the map has failed
 
   BoundedQueue<Extracted> extracted_;
   BoundedQueue<Task> tasks_;

@@ -46,7 +46,7 @@ struct SystemOptions {
     visit("loop_relaxation", self.loop_relaxation, {1, 10}, "",
           "factor that eases the thresholds of loop_detection; geometry has the last word anyway");
     visit("new_map_after", self.new_map_after, {1, 1000000}, "frames",
-          "lost in a row before a new map is begun beside the old one (slam)");
+          "lost in a row, with things to see, before a new map is begun beside the old one (slam)");
     visit("deterministic", self.deterministic, "",
           "one thread and exact arithmetic: repeatable to the bit");
     visit("queued_frames", self.queued_frames, {1, 1000}, "frames", "most that wait to be tracked");

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "core/error.h"
 #include "map/map_parts.h"
 #include "slam/test_recording.h"
@@ -115,6 +117,7 @@ TEST(System, BeginsANewMapWhenItCannotFindItselfAndJoinsThemLater) {
   SystemOptions options = deterministic();
   options.new_map_after = 3;
   options.relocalization.acceptance.min_inliers = 100000;  // never satisfied
+  options.relocalization.consensus.min_inliers = 100000;
   options.close_loops = false;
   const auto apart = make_system(options);
   feed(*apart, 0, 30);
@@ -148,6 +151,41 @@ TEST(System, BeginsANewMapWhenItCannotFindItselfAndJoinsThemLater) {
   }
   EXPECT_LT(worst_error(first), 0.02);
   EXPECT_LT(worst_error(second, 100.0), 0.02);
+}
+
+TEST(System, FindsItselfByWeakPosesOfThreeFramesInARow) {
+  SystemOptions options = deterministic();
+  options.mode = "localization";
+  options.relocalization.acceptance.min_inliers = 100000;  // no frame is enough by itself
+  const auto system = make_system(options);
+  system->load_map(known_map(), {});
+  feed(*system, 20, 22, 100.0);
+  system->begin_sequence();  // these two say nothing about what follows
+  feed(*system, 25, kFrames, 101.0);
+  system->finish();
+  for (std::size_t i = 0; i < system->frames().size(); ++i) {
+    const bool found = system->frames()[i].state == TrackingState::kTracking;
+    EXPECT_EQ(found, i >= 4) << i;
+  }
+  EXPECT_LT(worst_error(system->trajectory(), 101.0), 0.02);
+}
+
+TEST(System, DoesNotGiveUpAMapForACoveredLens) {
+  SystemOptions options = deterministic();
+  options.new_map_after = 3;
+  const auto system = make_system(options);
+  feed(*system, 0, 30);
+  for (int i = 30; i < 40; ++i) {
+    RgbdImage covered = recording().images()[static_cast<std::size_t>(i)];
+    covered.depth = cv::Mat::zeros(covered.depth.size(), covered.depth.type());
+    covered.color = covered.color.clone();
+    std::memset(covered.color.data, 0xFF, sizeof(std::int32_t));
+    system->process(covered);
+  }
+  feed(*system, 40, kFrames);
+  system->finish();
+  EXPECT_EQ(system->components().size(), 1U);
+  EXPECT_EQ(system->trajectory().size(), static_cast<std::size_t>(kFrames - 10));
 }
 
 TEST(System, ReportsTheMapSizeOfEachRecordingAndSavesAsItGoes) {

@@ -28,6 +28,8 @@ class Recording {
  public:
   Recording() : scene_(1200) {
     for (int i = 0; i < kFrames; ++i) add(i);
+    nothing_.descriptors.create(0, features_.front().descriptors.cols,
+                                features_.front().descriptors.type());
   }
 
   const Camera& camera() const { return scene_.camera(); }
@@ -37,9 +39,11 @@ class Recording {
     return traits;
   }
   const std::vector<RgbdImage>& images() const { return images_; }
+  // A negative index is an image that shows nothing.
   const Features& features(const cv::Mat& color) const {
     std::int32_t index = 0;
     std::memcpy(&index, color.data, sizeof(index));
+    if (index < 0) return nothing_;
     return features_.at(static_cast<std::size_t>(index));
   }
 
@@ -76,6 +80,7 @@ class Recording {
   PointScene scene_;
   std::vector<RgbdImage> images_;
   std::vector<Features> features_;
+  Features nothing_;
 };
 
 inline const Recording& recording() {
