@@ -76,6 +76,10 @@ void add_synth_command(CLI::App& app) {
       ->add_option("--offset", options.path.sideways,
                    "metres that the path is shifted to the right, -0.4 to 0.4")
       ->capture_default_str();
+  command
+      ->add_option("--walk", options.path.walk,
+                   "another walk through the same place: other glances, another hand")
+      ->capture_default_str();
   command->add_flag("--reverse", options.path.reverse,
                     "walk the path the other way, looking the other way");
   command->add_option("--standstill", options.path.standstill, "seconds at rest before the walk")

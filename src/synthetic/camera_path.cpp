@@ -41,7 +41,9 @@ CameraPath::CameraPath(const Layout& layout, const PathOptions& options, std::ui
       side_look_(layout.side_look) {
   require(nodes_.size() >= 4, "a path needs at least four nodes");
   speed_ = options.speed > 0.0 ? options.speed : layout.natural_speed;
-  Random random(mix_seed(seed, 0x9A7B));
+  const std::uint64_t walk = mix_seed(seed, 0x9A7B);
+  Random random(options.walk == 0 ? walk
+                                  : mix_seed(walk, static_cast<std::uint64_t>(options.walk)));
   for (double& phase : phases_) phase = random.uniform(0.0, 6.28318);
   measure_curve();
   length_ = round_ + overlap_;

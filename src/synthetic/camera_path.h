@@ -22,6 +22,7 @@ struct PathOptions {
   double raise = 0.0;       // metres
   double turn = 0.0;        // degrees
   bool reverse = false;
+  int walk = 0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -37,6 +38,8 @@ struct PathOptions {
           "the whole path shifted to the walker's right");
     visit("raise", self.raise, {-1.0, 1.0}, "m", "the whole path shifted up");
     visit("turn", self.turn, {-180.0, 180.0}, "deg", "the look turned to the left");
+    visit("walk", self.walk, {0, 2147483647}, "",
+          "which of many walks along the path, with other glances and another hand");
     visit("reverse", self.reverse, "", "walk the path the other way, looking the other way");
   }
 };
@@ -45,7 +48,7 @@ struct PathOptions {
 /// and a little more, looking along it with slow glances. Immutable, thread-safe.
 class CameraPath {
  public:
-  /// `seed` decides glances and trembling.
+  /// `seed` and the walk decide glances and trembling.
   CameraPath(const Layout& layout, const PathOptions& options, std::uint64_t seed);
 
   /// Pose at `time` seconds; before 0 and after duration() the camera is at rest.

@@ -92,6 +92,29 @@ TEST(CameraPath, LooksLevelAlongThePathFromTheGivenHeight) {
   EXPECT_LT((pose.rotation() * Eigen::Vector3d::UnitY()).z(), -0.9);         // y is down
 }
 
+TEST(CameraPath, AnotherWalkTakesTheSameWayAndLooksElsewhere) {
+  const Layout layout = make_layout("room", 1);
+  PathOptions options;
+  const CameraPath first(layout, options, 1);
+  options.walk = 5;
+  const CameraPath second(layout, options, 1);
+  const CameraPath again(layout, options, 1);
+  EXPECT_NEAR(first.length(), second.length(), 1e-9);
+  const auto pose_at = [](const CameraPath& path, double length) {
+    double time = 0.0;
+    while (path.length_at(time) < length) time += 0.01;
+    return path.world_from_camera(time);
+  };
+  double largest_turn = 0.0;
+  for (double length = 0.5; length < first.length(); length += 0.5) {
+    const SE3 a = pose_at(first, length), b = pose_at(second, length);
+    EXPECT_LT(translation_distance(a, b), 0.1);
+    largest_turn = std::max(largest_turn, rotation_angle(a, b) * kDegrees);
+    EXPECT_EQ(b.matrix(), pose_at(again, length).matrix());
+  }
+  EXPECT_GT(largest_turn, 8.0);
+}
+
 TEST(CameraPath, SidewaysShiftsToTheRight) {
   PathOptions options;
   options.shake = 0.0;
