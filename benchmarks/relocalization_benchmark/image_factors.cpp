@@ -14,8 +14,7 @@
 namespace dxslam::benchmark {
 namespace {
 
-Query in_low_light(const Query& query, const Camera&) {
-  static const LowLight low_light;
+Query darkened(const Query& query, const LowLight& low_light) {
   Query dark = query;
   dark.image.color = low_light.apply(query.image.color, query.image.index);
   return dark;
@@ -49,9 +48,10 @@ cv::Mat blank_of(const cv::Mat& image) {
   return {image.size(), image.type(), cv::Scalar::all(0.0)};
 }
 
-Query only_the_middle(const Query& query, const Camera&) {
+Query only_the_middle(const Query& query, double margin) {
   const int width = query.image.color.cols, height = query.image.color.rows;
-  const cv::Rect middle(width / 5, height / 5, 3 * width / 5, 3 * height / 5);
+  const cv::Point corner(cvRound(margin * width), cvRound(margin * height));
+  const cv::Rect middle(corner, cv::Point(width, height) - corner);
   Query cropped = query;
   cropped.image.color = blank_of(query.image.color);
   query.image.color(middle).copyTo(cropped.image.color(middle));
@@ -84,9 +84,15 @@ Query turned(const Query& query, const Camera& camera, double degrees) {
 std::vector<ImageFactor> image_factors() {
   std::vector<ImageFactor> factors = {
       {"as recorded", [](const Query& query, const Camera&) { return query; }},
-      {"low light", in_low_light},
       {"patches over 30 %", behind_patches},
-      {"middle 36 % alone", only_the_middle}};
+      {"middle 36 % alone", [](const Query& q, const Camera&) { return only_the_middle(q, 0.2); }},
+      {"middle 16 % alone", [](const Query& q, const Camera&) { return only_the_middle(q, 0.3); }}};
+  for (const double gain : {LowLight::kDefaultGain, 0.03}) {
+    factors.push_back({fmt::format("low light at {}", gain),
+                       [low_light = LowLight(gain)](const Query& query, const Camera&) {
+                         return darkened(query, low_light);
+                       }});
+  }
   for (const double degrees : {15.0, 30.0, 45.0}) {
     factors.push_back({fmt::format("turned by {:.0f}°", degrees),
                        [degrees](const Query& query, const Camera& camera) {

@@ -18,6 +18,7 @@
 #include "io/image_file.h"
 #include "io/sequence_reader.h"
 #include "large_map.h"
+#include "start.h"
 #include "synthetic_factors.h"
 #include "trial.h"
 
@@ -32,9 +33,11 @@ struct Settings {
   std::string features = "hfnet";
   std::string csv;
   std::string cache;
+  std::string start_map;
   std::vector<std::string> parts = {"redkitchen", "hololens", "time", "synthetic"};
   std::vector<std::string> scenes = {"room", "office"};
   double synthetic_fps = 5.0;
+  std::string only;
   int every_photo = 1;
   int every_foreign = 3;  // of the recordings of other places every n-th frame is asked for
   RelocalizationOptions options;
@@ -157,6 +160,7 @@ void measure_split(const Settings& settings, const Split& split) {
   const Relocalizer relocalizer(map.camera(), map.extractor().traits(), settings.options);
   const std::vector<Query> queries = queries_of(*sequence, split, map);
   for (const ImageFactor& factor : image_factors()) {
+    if (factor.name.find(settings.only) == std::string::npos) continue;
     Row row{split.name + ": " + factor.name, split.right_distance, 5.0, {}};
     for (const Query& query : queries) {
       row.outcomes.push_back(locate(map, relocalizer, factor.apply(query, map.camera())));
@@ -182,11 +186,28 @@ void measure_time(const Settings& settings) {
   finish_row(row, settings);
 }
 
+// Program start with a large map: the hololens map and altered copies of it.
+void measure_program_start(const Settings& settings) {
+  constexpr int kRuns = 9;
+  const Split split = hololens();
+  const auto sequence = open_sequence(settings.shared + "/data/" + split.folder);
+  MapUnderTest map(*sequence, make_features(settings), split.in_map, split.right_distance);
+  const std::optional<RgbdImage> image = sequence->read(4);
+  const fs::path file = settings.start_map.empty()
+                            ? fs::temp_directory_path() / "relocalization_benchmark.dxmap"
+                            : fs::path(settings.start_map);
+  measure_start(
+      enlarge_map(map.map(), 1000), map.camera(), image.value(),
+      [&] { return make_extractor(settings.features); }, file, kRuns);
+  if (settings.start_map.empty()) fs::remove(file);
+}
+
 void measure_synthetic(const Settings& settings) {
   SyntheticTrial trial;
   trial.make_extractor = [&] { return make_features(settings); };
   trial.options = settings.options;
   trial.csv = settings.csv;
+  trial.only = settings.only;
   trial.fps = settings.synthetic_fps;
   for (const std::string& scene : settings.scenes) {
     trial.scene = scene;
@@ -195,11 +216,14 @@ void measure_synthetic(const Settings& settings) {
 }
 
 int run(const Settings& settings) {
-  if (settings.parts != std::vector<std::string>{"synthetic"}) print_heading();
+  if (settings.parts != std::vector<std::string>{"synthetic"} &&
+      settings.parts != std::vector<std::string>{"start"})
+    print_heading();
   for (const std::string& part : settings.parts) {
     if (part == "redkitchen") measure_split(settings, redkitchen());
     if (part == "hololens") measure_split(settings, hololens());
     if (part == "time") measure_time(settings);
+    if (part == "start") measure_program_start(settings);
     if (part == "synthetic") measure_synthetic(settings);
   }
   return 0;
@@ -216,12 +240,14 @@ int main(int argc, char** argv) {
   app.add_option("--csv", settings.csv, "File that every single outcome is appended to");
   app.add_option("--cache", settings.cache,
                  "Folder that keeps features, so that a second run need not extract them");
-  app.add_option("--parts", settings.parts, "redkitchen, hololens, time, synthetic")
+  app.add_option("--parts", settings.parts, "redkitchen, hololens, time, start, synthetic")
       ->delimiter(',');
+  app.add_option("--start-map", settings.start_map, "Keep the large map of the part start here");
   app.add_option("--every-foreign", settings.every_foreign,
                  "Ask for every n-th frame of recordings of other places")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--only", settings.only, "Only factors with this in their name");
   app.add_option("--every-photo", settings.every_photo, "Ask for every n-th photo")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

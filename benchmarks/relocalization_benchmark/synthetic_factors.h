@@ -16,6 +16,7 @@ struct SyntheticTrial {
   RelocalizationOptions options;
   std::string csv;  ///< as of append_csv(); empty: none
   std::string scene = "room";
+  std::string only;       ///< factors whose name has this
   double fps = 5.0;       ///< of both passes
   int every_query = 10;   ///< every n-th frame of the second pass is asked as an isolated image
   double longest = 60.0;  ///< seconds of the second pass that are asked one after another

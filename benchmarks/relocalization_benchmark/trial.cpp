@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
+#include "relocalization/consensus.h"
 
 namespace dxslam::benchmark {
 namespace {
@@ -105,6 +106,7 @@ Outcome locate(MapUnderTest& map, const Map& searched, const GlobalIndex& index,
   const FramePtr frame =
       make_frame(image, map.extractor().extract(image.color, true), map.camera());
   Outcome outcome;
+  outcome.stamp = query.image.stamp;
   const double before = processor_ms();
   outcome.report = relocalizer.relocalize(searched, index, *frame);
   outcome.ms = processor_ms() - before;
@@ -123,8 +125,21 @@ Outcome locate(MapUnderTest& map, const Map& searched, const GlobalIndex& index,
 void print_heading() {
   fmt::print(
       "| queries | number | accepted | right | right, with camera offset | right, relative to the "
-      "keyframe | wrong | median error, with offset | p95 | ms: median | p95 | groups |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "keyframe | wrong | by three in a row | of these wrong | median error, with offset | p95 | "
+      "ms: median | p95 | groups |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+Agreement agreement(const Row& row) {
+  RelocalizationConsensus consensus;
+  Agreement found;
+  for (const Outcome& o : row.outcomes) {
+    const std::optional<RelocalizationReport> taken = consensus.add(o.stamp, o.report);
+    if (!taken || o.report.accepted) continue;
+    ++found.accepted;
+    if (o.elsewhere || o.global.distance > kWrong) ++found.wrong;
+  }
+  return found;
 }
 
 void print_row(const Row& row) {
@@ -144,9 +159,9 @@ void print_row(const Row& row) {
     local += o.local.within(row.right_distance, row.right_angle) ? 1 : 0;
   }
   const double n = static_cast<double>(std::max<std::size_t>(1, row.outcomes.size()));
-  fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {:.1f} % | {:.1f} % | {} | ", row.name,
+  fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {:.1f} % | {:.1f} % | {} | {} | {} | ", row.name,
              row.outcomes.size(), 100.0 * accepted / n, 100.0 * right / n, 100.0 * with_offset / n,
-             100.0 * local / n, wrong);
+             100.0 * local / n, wrong, agreement(row).accepted, agreement(row).wrong);
   if (distances.empty()) {
     fmt::print("- | - | ");
   } else {
@@ -163,7 +178,8 @@ void append_csv(const std::string& path, const Row& row) {
   const bool fresh = !std::filesystem::exists(path);
   std::ofstream file(path, std::ios::app);
   if (fresh) {
-    file << "row,query,elsewhere,has_pose,accepted,confidence,matches,matched,visible,inliers,"
+    file << "row,query,elsewhere,has_pose,accepted,confidence,matches,matched,visible,coverage,"
+            "inliers,"
             "spread,rms,groups,distance,angle,offset_distance,offset_angle,local_distance,"
             "local_angle,ms\n";
   }
@@ -171,10 +187,11 @@ void append_csv(const std::string& path, const Row& row) {
     const Outcome& o = row.outcomes[i];
     const RelocalizationReport& r = o.report;
     file << fmt::format(
-        "{},{},{:d},{:d},{:d},{:.4f},{},{},{},{},{:.4f},{:.3f},{},{:.4f},{:.3f},{:.4f},{:.3f},"
+        "{},{},{:d},{:d},{:d},{:.4f},{},{},{},{:.3f},{},{:.4f},{:.3f},{},{:.4f},{:.3f},{:.4f},{:."
+        "3f},"
         "{:.4f},{:.3f},{:.2f}\n",
         row.name, i, o.elsewhere, r.has_pose, r.accepted, r.confidence, r.matches, r.matched,
-        r.visible, r.inliers, r.spread, r.rms_pixels, r.groups_tried, o.global.distance,
+        r.visible, r.coverage, r.inliers, r.spread, r.rms_pixels, r.groups_tried, o.global.distance,
         o.global.angle, o.with_offset.distance, o.with_offset.angle, o.local.distance,
         o.local.angle, o.ms);
   }

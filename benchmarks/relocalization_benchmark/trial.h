@@ -67,6 +67,7 @@ struct Outcome {
   Deviation global;       ///< from the truth, by align_poses
   Deviation with_offset;  ///< by align_with_camera_offset
   Deviation local;        ///< pose and truth both relative to the reference keyframe
+  double stamp = 0.0;     ///< of the image, seconds
   double ms = 0.0;        ///< processor time, without the features
 };
 
@@ -82,6 +83,13 @@ struct Row {
   double right_angle = 5.0;      ///< degrees
   std::vector<Outcome> outcomes;
 };
+
+/// What taking weak poses that agree over consecutive images (RelocalizationConsensus) would add.
+struct Agreement {
+  int accepted = 0;  ///< images that are not accepted by themselves
+  int wrong = 0;     ///< of these
+};
+Agreement agreement(const Row& row);
 
 /// Writes the heading, and a row, of a table in Markdown to stdout.
 void print_heading();

@@ -60,16 +60,17 @@ struct Results {
   Trajectory poses;
   std::string rows =
       "stamp,accepted,inliers,groups_tried,ms,confidence,matched,visible,spread,component,"
-      "keyframe\n";
+      "keyframe,coverage\n";
   std::vector<double> times;
 
   void add(double stamp, const RelocalizationReport& report, double ms) {
     if (report.accepted) poses.push_back({stamp, report.world_from_camera});
     times.push_back(ms);
-    rows += fmt::format("{:.6f},{:d},{},{},{:.3f},{:.4f},{},{},{:.4f},{},{}\n", stamp,
+    rows += fmt::format("{:.6f},{:d},{},{},{:.3f},{:.4f},{},{},{:.4f},{},{},{:.3f}\n", stamp,
                         report.accepted, report.inliers, report.groups_tried, ms, report.confidence,
                         report.matched, report.visible, report.spread, report.component,
-                        report.has_pose ? static_cast<std::int64_t>(report.reference) : -1);
+                        report.has_pose ? static_cast<std::int64_t>(report.reference) : -1,
+                        report.coverage);
   }
 };
 

@@ -25,7 +25,8 @@ std::optional<RelocalizationReport> RelocalizationConsensus::add(
     return report;
   }
   const bool weak = report.has_pose && report.matched >= options_.min_matched &&
-                    report.inliers >= options_.min_inliers;
+                    report.inliers >= options_.min_inliers &&
+                    report.coverage >= options_.min_coverage;
   if (!weak) {
     reset();
     return std::nullopt;

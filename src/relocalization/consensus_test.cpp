@@ -14,6 +14,7 @@ RelocalizationReport weak_at(double x, std::uint32_t component = 0) {
   report.has_pose = true;
   report.matched = 12;
   report.inliers = 20;
+  report.coverage = 0.8;
   report.component = component;
   report.world_from_camera = SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0));
   return report;
@@ -79,6 +80,13 @@ TEST(RelocalizationConsensus, PosesOnTooFewPointsDoNotCount) {
   RelocalizationReport faint = weak_at(0.0);
   faint.matched = 5;
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(consensus.add(0.1 * i, faint).has_value());
+}
+
+TEST(RelocalizationConsensus, PosesThatAgreeWithOnePartOfTheImageAloneDoNotCount) {
+  RelocalizationConsensus consensus;
+  RelocalizationReport twice = weak_at(0.0);
+  twice.coverage = 0.3;
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(consensus.add(0.1 * i, twice).has_value());
 }
 
 TEST(RelocalizationConsensus, NamesTheOptionThatIsOutOfRange) {

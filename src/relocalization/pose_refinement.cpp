@@ -3,6 +3,7 @@
 #include "relocalization/pose_refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <unordered_map>
@@ -14,6 +15,11 @@ namespace {
 
 constexpr double kDegree = 0.017453292519943295;
 constexpr double kNearest = 0.05;  // metres; nearer points are not looked for
+
+// Areas of the image for the coverage; one with fewer keypoints or points in view says nothing.
+constexpr int kAreaColumns = 8;
+constexpr int kAreaRows = 6;
+constexpr int kFew = 3;
 
 // The map point of `match` as an observation at `pose`. A depth reading beside an edge is often
 // that of another surface: it counts only where it agrees with the pose so far.
@@ -53,9 +59,11 @@ bool PoseRefiner::refine(RefinedPose& pose) const {
   const KeyframeId better = best_reference(pose.inliers);
   if (better != pose.reference) points = local_points(better);
   pose.inliers.clear();
-  search(points, options_.narrow_radius, pose);
+  const std::vector<Eigen::Vector2f> in_view = search(points, options_.narrow_radius, pose);
   if (!optimise(pose)) return false;
   pose.reference = best_reference(pose.inliers);
+  pose.visible = static_cast<int>(in_view.size());
+  pose.coverage = coverage(in_view, pose.inliers);
   return true;
 }
 
@@ -119,8 +127,39 @@ bool PoseRefiner::should_see(const MapPoint& point, const SE3& world_from_camera
   return ratio <= options_.max_distance_ratio && ratio * options_.max_distance_ratio >= 1.0;
 }
 
-void PoseRefiner::search(const std::vector<PointId>& points, double radius,
-                         RefinedPose& pose) const {
+double PoseRefiner::coverage(const std::vector<Eigen::Vector2f>& in_view,
+                             const std::vector<PointMatch>& inliers) const {
+  struct Area {
+    int keypoints = 0;
+    int points = 0;
+    bool agrees = false;
+  };
+  std::array<Area, kAreaColumns * kAreaRows> areas{};
+  const auto area_of = [&](const Eigen::Vector2f& pixel) -> Area& {
+    const auto part = [](float x, int size, int parts) {
+      return std::clamp(static_cast<int>(x) * parts / size, 0, parts - 1);
+    };
+    const int row = part(pixel.y(), camera_.height, kAreaRows);
+    const int column = part(pixel.x(), camera_.width, kAreaColumns);
+    return areas[static_cast<std::size_t>(row * kAreaColumns + column)];
+  };
+  for (const Eigen::Vector2f& pixel : frame_.pixels) ++area_of(pixel).keypoints;
+  for (const Eigen::Vector2f& pixel : in_view) ++area_of(pixel).points;
+  for (const PointMatch& m : inliers) {
+    area_of(frame_.pixels[static_cast<std::size_t>(m.keypoint)]).agrees = true;
+  }
+  int telling = 0;
+  int agreeing = 0;
+  for (const Area& area : areas) {
+    if (area.keypoints < kFew || area.points < kFew) continue;
+    ++telling;
+    agreeing += area.agrees ? 1 : 0;
+  }
+  return telling > 0 ? static_cast<double>(agreeing) / telling : 0.0;
+}
+
+std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& points, double radius,
+                                                 RefinedPose& pose) const {
   std::vector<char> taken(frame_.size(), 0);
   std::vector<PointId> matched;
   for (const PointMatch& match : pose.inliers) {
@@ -132,18 +171,17 @@ void PoseRefiner::search(const std::vector<PointId>& points, double radius,
   const float window = static_cast<float>(radius * camera_.width / 640.0);
   std::vector<PixelPrediction> predictions;
   std::vector<PointId> ids;
+  std::vector<Eigen::Vector2f> in_view;
   cv::Mat descriptors(static_cast<int>(points.size()), frame_.descriptors.cols,
                       frame_.descriptors.type());
-  pose.visible = 0;
   for (const PointId id : points) {
     const MapPoint& point = map_.point(id);
     const Eigen::Vector3d p = camera_from_world * point.position;
     if (!should_see(point, pose.world_from_camera, p)) continue;
-    ++pose.visible;
+    in_view.push_back(camera_.project(p).cast<float>());
     if (std::binary_search(matched.begin(), matched.end(), id)) continue;
     const int row = static_cast<int>(ids.size());
-    predictions.push_back(
-        {row, camera_.project(p).cast<float>(), window, static_cast<float>(p.z())});
+    predictions.push_back({row, in_view.back(), window, static_cast<float>(p.z())});
     ids.push_back(id);
     std::memcpy(descriptors.ptr(row), map_.descriptor_of(id).ptr(),
                 descriptors.elemSize() * static_cast<std::size_t>(descriptors.cols));
@@ -153,6 +191,7 @@ void PoseRefiner::search(const std::vector<PointId>& points, double radius,
   for (const Match& m : match_guided(predictions, descriptors, frame_, grid_, taken, matching)) {
     pose.inliers.push_back({m.b, ids[static_cast<std::size_t>(m.a)]});
   }
+  return in_view;
 }
 
 }  // namespace dxslam

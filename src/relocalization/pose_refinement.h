@@ -24,6 +24,7 @@ struct RefinedPose {
   std::vector<PointMatch> inliers;
   KeyframeId reference = kNoId;  ///< sees most of the inliers
   int visible = 0;               ///< points of the local map that should be in view
+  double coverage = 0.0;         ///< as in RelocalizationReport
   double rms_pixels = 0.0;
 };
 
@@ -43,7 +44,11 @@ class PoseRefiner {
   bool optimise(RefinedPose& pose) const;
   KeyframeId best_reference(const std::vector<PointMatch>& matches) const;
   std::vector<PointId> local_points(KeyframeId reference) const;
-  void search(const std::vector<PointId>& points, double radius, RefinedPose& pose) const;
+  /// Adds the points that are found; returns the pixels of those that should be in view.
+  std::vector<Eigen::Vector2f> search(const std::vector<PointId>& points, double radius,
+                                      RefinedPose& pose) const;
+  double coverage(const std::vector<Eigen::Vector2f>& in_view,
+                  const std::vector<PointMatch>& inliers) const;
   bool should_see(const MapPoint& point, const SE3& world_from_camera,
                   const Eigen::Vector3d& in_camera) const;
 

@@ -12,7 +12,8 @@ namespace dxslam {
 struct AcceptanceOptions {
   int min_matched = 13;
   int min_inliers = 22;
-  double min_ratio = 0.045;
+  double min_ratio = 0.015;
+  double min_coverage = 0.45;
   double min_spread = 0.03;
   double min_confidence = 0.95;
 
@@ -24,6 +25,8 @@ struct AcceptanceOptions {
           "map points that agree with the refined pose");
     visit("min_ratio", self.min_ratio, {0, 1}, "",
           "share of them among the map points that should be in view");
+    visit("min_coverage", self.min_coverage, {0, 1}, "",
+          "share of the parts of the image, with keypoints and map points, where some agree");
     visit("min_spread", self.min_spread, {0, 1}, "",
           "their deviation along the narrowest direction, relative to the image's diagonal");
     visit("min_confidence", self.min_confidence, {0, 1}, "",
@@ -36,6 +39,7 @@ struct ConsensusOptions {
   int frames = 3;
   int min_matched = 10;
   int min_inliers = 15;
+  double min_coverage = 0.45;
   double max_gap = 1.0;
   double max_speed = 1.5;
   double max_turn = 120.0;
@@ -49,6 +53,7 @@ struct ConsensusOptions {
           "of a weak pose: matches by descriptor alone that agree with it");
     visit("min_inliers", self.min_inliers, {6, 100000}, "points",
           "of a weak pose: map points that agree with it");
+    visit("min_coverage", self.min_coverage, {0, 1}, "", "of a weak pose, as for acceptance");
     visit("max_gap", self.max_gap, {0.001, 60}, "s", "longest time between two of them");
     visit("max_speed", self.max_speed, {0, 100}, "m/s", "how fast the camera may move");
     visit("max_turn", self.max_turn, {0, 3600}, "degrees/s", "how fast it may turn");

@@ -95,6 +95,7 @@ class GroupAttempt {
     report.reference = pose.reference;
     report.visible = pose.visible;
     report.inliers = static_cast<int>(pose.inliers.size());
+    report.coverage = pose.coverage;
     report.rms_pixels = pose.rms_pixels;
     report.spread = spread_of(camera_, frame_, pose.inliers);
     report.points.assign(frame_.size(), kNoId);
@@ -106,6 +107,7 @@ class GroupAttempt {
     const AcceptanceOptions& least = options_.acceptance;
     report.accepted = report.matched >= least.min_matched && report.inliers >= least.min_inliers &&
                       report.ratio() >= least.min_ratio && report.spread >= least.min_spread &&
+                      report.coverage >= least.min_coverage &&
                       report.confidence >= least.min_confidence;
   }
 

@@ -50,6 +50,7 @@ TEST_F(RelocalizerTest, FindsAFrameBetweenTheKeyframes) {
   EXPECT_EQ(report.groups_tried, 1);
   EXPECT_GT(report.confidence, 0.9);
   EXPECT_GT(report.ratio(), 0.5);
+  EXPECT_GT(report.coverage, 0.9);
   ASSERT_TRUE(map_.has_keyframe(report.reference));
   EXPECT_LT(translation_distance(map_.keyframe(report.reference).world_from_camera, truth), 0.5);
   int bound = 0;
@@ -109,6 +110,35 @@ TEST_F(RelocalizerTest, RejectsAFewPointsInACornerOfTheImage) {
   const RelocalizationReport report = relocalizer_.relocalize(map_, index_, *corner);
   EXPECT_TRUE(report.has_pose);
   EXPECT_LT(report.spread, 0.03);
+  EXPECT_FALSE(report.accepted);
+}
+
+TEST_F(RelocalizerTest, RejectsAThingThatIsThereTwice) {
+  // Another place in which one thing of the first stands, seen from the same side.
+  PointScene elsewhere(2500, 99);
+  const FramePtr twin = query(one_, PointScene::pose(0.43), 0.086);
+  const FramePtr rest = elsewhere.frame(100, PointScene::pose(0.43), 0.3, 0.8);
+  const auto on_thing = [](const Eigen::Vector2f& p) {
+    return p.x() > 200.0F && p.x() < 400.0F && p.y() > 120.0F && p.y() < 320.0F;
+  };
+  auto mixed = std::make_shared<Frame>();
+  mixed->global = twin->global;
+  for (const Frame* from : {twin.get(), rest.get()}) {
+    for (std::size_t i = 0; i < from->size(); ++i) {
+      if (on_thing(from->pixels[i]) != (from == twin.get())) continue;
+      mixed->pixels.push_back(from->pixels[i]);
+      mixed->depths.push_back(from->depths[i]);
+      mixed->scores.push_back(1.0F);
+      mixed->sigmas.push_back(1.0F);
+      mixed->descriptors.push_back(from->descriptors.row(static_cast<int>(i)));
+    }
+  }
+  const RelocalizationReport report = relocalizer_.relocalize(map_, index_, *mixed);
+  const AcceptanceOptions& least = relocalizer_.options().acceptance;
+  ASSERT_TRUE(report.has_pose);
+  EXPECT_GE(report.confidence, least.min_confidence);  // by the points that agree alone
+  EXPECT_GE(report.spread, least.min_spread);
+  EXPECT_LT(report.coverage, least.min_coverage);
   EXPECT_FALSE(report.accepted);
 }
 
