@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <future>
 #include <thread>
 
 #include "apps/commands.h"
@@ -124,6 +125,10 @@ int run(const RunSettings& settings) {
   const SystemOptions options = options_of(settings);
   check_map_settings(settings, options);
   const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, settings.reader);
+  std::future<StoredMap> loading;  // while the network is made ready
+  if (!settings.map_in.empty()) {
+    loading = std::async(std::launch::async, load_map, settings.map_in);
+  }
   std::unique_ptr<TrajectoryWriter> writer;
   if (!settings.out.empty()) {
     make_folder(settings.out);
@@ -146,7 +151,7 @@ int run(const RunSettings& settings) {
   const MapHeader header = map_header(sequence->camera(), system.extractor());
   std::vector<std::string> stored;
   if (!settings.map_in.empty()) {
-    stored = load_map_into(system, settings.map_in, header, options.mode == "slam");
+    stored = hand_over(loading.get(), system, settings.map_in, header, options.mode == "slam");
   }
   thumbnails.emplace(settings.thumbnails, std::move(stored));
   AutoSaver saver(settings.map_out, header);

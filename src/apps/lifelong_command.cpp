@@ -138,7 +138,8 @@ int run(const LifelongSettings& settings) {
   const MapHeader header = map_header(sequences.front()->camera(), system.extractor());
   std::vector<std::string> thumbnails;
   if (!settings.map_in.empty()) {
-    thumbnails = load_map_into(system, settings.map_in, header, options.mode == "slam");
+    thumbnails = hand_over(load_map(settings.map_in), system, settings.map_in, header,
+                           options.mode == "slam");
   }
   std::vector<Visit> visits;
   for (std::size_t v = 0; v < sequences.size(); ++v) {

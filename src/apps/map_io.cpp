@@ -28,9 +28,8 @@ MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor) {
   return {camera, extractor.name(), extractor.model_hash(), extractor.traits()};
 }
 
-std::vector<std::string> load_map_into(System& system, const std::string& path,
-                                       const MapHeader& current, bool grows) {
-  StoredMap stored = load_map(path);
+std::vector<std::string> hand_over(StoredMap stored, System& system, const std::string& path,
+                                   const MapHeader& current, bool grows) {
   require_same_features(stored.header, current, path);
   if (grows) require_same_camera(stored.header, current, path);
   stored.thumbnails.resize(stored.map.keyframe_ids().back() + std::size_t{1});

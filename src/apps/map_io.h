@@ -21,11 +21,11 @@ MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor);
 std::vector<StoredLoopEdge> stored_loops(const Map& map, const std::vector<LoopEdge>& loops);
 std::vector<LoopEdge> loop_edges(const std::vector<StoredLoopEdge>& stored);
 
-/// Reads a map file and hands it to the system. Throws InputError if it is damaged or was made with
+/// Hands a map, read from the file `path`, to the system. Throws InputError if it was made with
 /// other features, or, where the map is to grow, with another camera. Returns the pictures in it,
 /// one for each of its keyframes' ids; empty strings where there is none.
-std::vector<std::string> load_map_into(System& system, const std::string& path,
-                                       const MapHeader& current, bool grows);
+std::vector<std::string> hand_over(StoredMap stored, System& system, const std::string& path,
+                                   const MapHeader& current, bool grows);
 
 void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
                      const std::vector<LoopEdge>& loops,

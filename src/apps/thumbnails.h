@@ -21,7 +21,7 @@ namespace dxslam::apps {
 class Thumbnails {
  public:
   /// Nothing is made unless `wanted`. `stored` are those of a map that is gone on with, one a
-  /// keyframe (load_map_into).
+  /// keyframe (hand_over).
   Thumbnails(bool wanted, std::vector<std::string> stored)
       : wanted_(wanted), stored_(std::move(stored)) {}
 
