@@ -93,21 +93,36 @@ int LocalMapper::cull_recent_points() {
   return culled;
 }
 
+void LocalMapper::begin_recording() {
+  const std::vector<KeyframeId> ids = map_.keyframe_ids();
+  first_of_recording_ = ids.empty() ? 0 : ids.back() + 1;
+}
+
+// A place visited again and again must not grow each time: what a new visit adds to a known place
+// has to be worth more there.
+bool LocalMapper::is_redundant(const Keyframe& k) const {
+  int points = 0;
+  int redundant = 0;
+  int known = 0;
+  for (const PointId id : k.points) {
+    if (id == kNoId) continue;
+    ++points;
+    const std::vector<PointObservation>& seen = map_.point(id).observations;
+    if (static_cast<int>(seen.size()) > options_.redundant_observers) ++redundant;
+    if (seen.front().keyframe < first_of_recording_) ++known;
+  }
+  const bool revisits = k.id >= first_of_recording_ && 2 * known > points;
+  const double share = revisits ? options_.redundant_share_known : options_.redundant_share;
+  return points == 0 || redundant > share * points;
+}
+
 std::vector<KeyframeId> LocalMapper::cull_keyframes(KeyframeId newest) {
   std::vector<KeyframeId> culled;
   for (const Covisible& c : std::vector<Covisible>(map_.keyframe(newest).covisibles)) {
     const Keyframe& k = map_.keyframe(c.keyframe);
     // The last few are still being matched with, the first holds the world frame.
     if (k.parent == kNoId || newest - k.id <= 2) continue;
-    int points = 0;
-    int redundant = 0;
-    for (const PointId id : k.points) {
-      if (id == kNoId) continue;
-      ++points;
-      const int others = static_cast<int>(map_.point(id).observations.size()) - 1;
-      if (others >= options_.redundant_observers) ++redundant;
-    }
-    if (points == 0 || redundant > options_.redundant_share * points) {
+    if (is_redundant(k)) {
       culled.push_back(k.id);
       map_.remove_keyframe(k.id);
     }

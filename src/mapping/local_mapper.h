@@ -44,6 +44,9 @@ class LocalMapper {
   /// Adjusts all keyframes and points together. Returns the observations unbound as outliers.
   int adjust_full_bundle(const BundleOptions& options);
 
+  /// What comes from now on is of another recording than the map so far.
+  void begin_recording();
+
   /// Snapshot around a keyframe.
   LocalMapPtr local_map_around(KeyframeId keyframe);
   /// Snapshot around the newest keyframe. There must be one.
@@ -65,6 +68,7 @@ class LocalMapper {
   int fuse_with_neighbours(KeyframeId keyframe);
   int cull_recent_points();
   std::vector<KeyframeId> cull_keyframes(KeyframeId newest);
+  bool is_redundant(const Keyframe& k) const;
   void adjust_local_bundle(KeyframeId keyframe, MappingReport& report);
 
   Camera camera_;
@@ -72,6 +76,7 @@ class LocalMapper {
   MappingOptions options_;
   Map map_;
   std::vector<Recent> recent_;
+  KeyframeId first_of_recording_ = 0;
   std::uint64_t version_ = 0;
 };
 

@@ -92,6 +92,26 @@ TEST_F(LocalMapperTest, CullsKeyframesThatShowNothingNew) {
   EXPECT_EQ(mapper_.map().keyframe_count(), static_cast<std::size_t>(12 - culled));
 }
 
+TEST_F(LocalMapperTest, KeepsLessOfAnotherVisitOfTheSamePlace) {
+  // Back and forth along one path, told or not told that each way is another visit.
+  const auto keyframes_after = [&](bool told) {
+    mapper_ = LocalMapper(scene_.camera(), scene_.traits(), MappingOptions());
+    for (int visit = 0; visit < 4; ++visit) {
+      if (told) mapper_.begin_recording();
+      for (int k = 0; k < 8; ++k) {
+        const int place = visit % 2 == 0 ? k : 7 - k;
+        add(8 * visit + k, PointScene::pose(0.4 * place + 0.05 * visit));
+      }
+    }
+    return mapper_.map().keyframe_count();
+  };
+  const std::size_t once = keyframes_after(false);
+  const std::size_t visits = keyframes_after(true);
+  EXPECT_LT(visits, once);
+  EXPECT_GT(visits, 2U);
+  EXPECT_LT(median_position_error(), 0.1);
+}
+
 TEST_F(LocalMapperTest, DropsPointsThatAreExpectedButNeverFound) {
   add(0, SE3());
   KeyframeRequest request;

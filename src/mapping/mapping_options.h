@@ -23,6 +23,7 @@ struct MappingOptions {
   int bundle_fixed_keyframes = 30;
   int bundle_min_shared = 15;
   double redundant_share = 0.9;
+  double redundant_share_known = 0.75;
   int redundant_observers = 3;
   LocalMapOptions local_map;
   BundleOptions bundle{5, 8, 3e-4};
@@ -57,6 +58,8 @@ struct MappingOptions {
           "shared with the new keyframe by those it moves");
     visit("redundant_share", self.redundant_share, {0.1, 1}, "",
           "share of points seen elsewhere that makes a keyframe redundant");
+    visit("redundant_share_known", self.redundant_share_known, {0.1, 1}, "",
+          "the same where most points are known from earlier recordings");
     visit("redundant_observers", self.redundant_observers, {1, 100}, "keyframes",
           "others that must see a point for that");
     visit.group("local_map", self.local_map);

@@ -13,7 +13,7 @@ struct AcceptanceOptions {
   int min_matched = 13;
   int min_inliers = 22;
   double min_ratio = 0.015;
-  double min_coverage = 0.45;
+  double min_coverage = 0.5;
   double min_spread = 0.03;
   double min_confidence = 0.95;
 
@@ -39,7 +39,7 @@ struct ConsensusOptions {
   int frames = 3;
   int min_matched = 10;
   int min_inliers = 15;
-  double min_coverage = 0.45;
+  double min_coverage = 0.5;
   double max_gap = 1.0;
   double max_speed = 1.5;
   double max_turn = 120.0;

@@ -57,8 +57,8 @@ class Backend {
   LocalMapPtr follow(const KeyframeRequest& request);
   /// By the frame alone, or by weak poses of frames in a row that agree.
   RelocalizationAnswer relocalize(const Frame& frame);
-  /// The next frame to be relocalized does not continue the last one.
-  void forget_weak_poses() { consensus_.reset(); }
+  /// What comes from now on is of another recording.
+  void begin_recording();
 
   /// Ends what runs in the background and, if so configured, adjusts the whole map once more; a map
   /// that was only localized in stays as it is.

@@ -155,7 +155,7 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted,
     newest_local_map();
     lost_frames_ = 0;
     const std::lock_guard lock(map_mutex_);
-    backend_.forget_weak_poses();
+    backend_.begin_recording();
   }
   TrackedFrame tracked;
   if (seeking_) {
