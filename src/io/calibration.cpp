@@ -35,31 +35,61 @@ struct CameraFields : Camera {
   }
 };
 
-void require_intrinsics(const std::string& yaml, const std::string& where) {
-  YamlMap map = YamlMap::parse(yaml, where);
-  for (const char* name : {"width", "height", "fx", "fy", "cx", "cy"}) {
+struct CalibrationFields : CameraFields {
+  DepthCamera depth_camera;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    CameraFields::describe(self, visit);
+    visit.group("depth_camera", self.depth_camera);
+  }
+};
+
+void require_fields(YamlMap& map, const std::string& where, const std::vector<const char*>& names) {
+  for (const char* name : names) {
     std::string value;
     if (map.take(name, value)) continue;
     throw InputError(
-        fmt::format("{}: no {} in it, expected width, height, fx, fy, cx and cy", where, name));
+        fmt::format("{}: no {} in it, expected {}", where, name, fmt::join(names, ", ")));
+  }
+}
+
+void require_intrinsics(const std::string& yaml, const std::string& where) {
+  YamlMap map = YamlMap::parse(yaml, where);
+  require_fields(map, where, {"width", "height", "fx", "fy", "cx", "cy"});
+  if (auto depth_camera = map.take_map("depth_camera")) {
+    require_fields(*depth_camera, depth_camera->where() + " (depth_camera)",
+                   {"fx", "fy", "cx", "cy"});
   }
 }
 
 }  // namespace
 
-Camera parse_camera(const std::string& yaml, const std::string& where) {
-  CameraFields camera;
-  read_options_yaml(yaml, where, camera);
+RgbdCalibration parse_calibration(const std::string& yaml, const std::string& where) {
+  CalibrationFields fields;
+  read_options_yaml(yaml, where, fields);
   require_intrinsics(yaml, where);
-  camera.validate(where);
-  return camera;
+  fields.validate(where);
+  if ((fields.depth_camera.fx == 0.0) != (fields.depth_camera.fy == 0.0)) {
+    throw InputError(fmt::format("{}: depth_camera has fx {} and fy {}, expected both or none",
+                                 where, fields.depth_camera.fx, fields.depth_camera.fy));
+  }
+  return {fields, fields.depth_camera};
+}
+
+Camera parse_camera(const std::string& yaml, const std::string& where) {
+  return parse_calibration(yaml, where).camera;
+}
+
+RgbdCalibration load_calibration(const std::string& name_or_file) {
+  if (name_or_file.find_first_of("/.") == std::string::npos) {
+    return parse_calibration(camera_preset_text(name_or_file), "preset " + name_or_file);
+  }
+  return parse_calibration(read_file(name_or_file, "a camera file (YAML)"), name_or_file);
 }
 
 Camera load_camera(const std::string& name_or_file) {
-  if (name_or_file.find_first_of("/.") == std::string::npos) {
-    return parse_camera(camera_preset_text(name_or_file), "preset " + name_or_file);
-  }
-  return parse_camera(read_file(name_or_file, "a camera file (YAML)"), name_or_file);
+  return load_calibration(name_or_file).camera;
 }
 
 std::vector<std::string> camera_preset_names() {

@@ -36,6 +36,28 @@ TEST(Calibration, DumpReadsBackToTheSame) {
   EXPECT_EQ(dump_camera(again, "A title"), dump_camera(camera, "A title"));
 }
 
+TEST(Calibration, ReadsWhereTheDepthCameraIs) {
+  const std::string depth =
+      "depth_camera:\n  fx: 58\n  fy: 59\n  cx: 31\n  cy: 23\n  x: -0.025\n  rz: 0.01\n";
+  const RgbdCalibration calibration = parse_calibration(test_calibration() + depth, "c.yaml");
+  EXPECT_FALSE(calibration.depth_camera.registered());
+  EXPECT_EQ(calibration.depth_camera.fy, 59.0);
+  EXPECT_EQ(calibration.depth_camera.color_from_depth().translation().x(), -0.025);
+  EXPECT_EQ(calibration.camera.fx, parse_camera(test_calibration(), "c.yaml").fx);
+  EXPECT_TRUE(parse_calibration(test_calibration(), "c.yaml").depth_camera.registered());
+}
+
+TEST(Calibration, RefusesHalfADepthCamera) {
+  const std::string good = test_calibration();
+  const auto refuse = [&](const std::string& text, const std::vector<std::string>& parts) {
+    expect_input_error([&] { parse_calibration(good + text, "c.yaml"); }, parts);
+  };
+  refuse("depth_camera:\n  fx: 58\n  fy: 58\n  cx: 31\n", {"c.yaml", "depth_camera", "no cy"});
+  refuse("depth_camera:\n  fx: 58\n  fy: 0\n  cx: 31\n  cy: 2\n", {"c.yaml", "fx 58 and fy 0"});
+  refuse("depth_camera:\n  f: 58\n", {"c.yaml:9", "f"});
+  refuse("depth_camera: 3\n", {"c.yaml:8", "depth_camera"});
+}
+
 TEST(Calibration, RefusesWhatCannotBeACamera) {
   const std::string good = test_calibration();
   EXPECT_NO_THROW(parse_camera(good, "c.yaml"));

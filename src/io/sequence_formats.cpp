@@ -92,7 +92,11 @@ bool use_explicit_calibration(const std::string& folder, const SequenceOptions& 
     if (source.empty() && std::filesystem::exists(own)) source = own;
   }
   if (source.empty()) return false;
-  listing.camera = load_camera(source);
+  const RgbdCalibration calibration = load_calibration(source);
+  listing.camera = calibration.camera;
+  if (!calibration.depth_camera.registered()) {
+    listing.register_depth = DepthRegistration(listing.camera, calibration.depth_camera);
+  }
   listing.calibration_source = source;
   return true;
 }

@@ -32,7 +32,8 @@ std::string in_folder(const std::string& folder, const std::string& name);
 /// Last part of the path, also of one that ends with '/'.
 std::string folder_name(const std::string& folder);
 /// The calibration the user gave, or the folder's own calibration.yaml or camera.yaml; returns
-/// whether there was one, and then sets the camera and its source.
+/// whether there was one, and then sets the camera, its source and, where the depth camera is
+/// given, the registration.
 bool use_explicit_calibration(const std::string& folder, const SequenceOptions& options,
                               SequenceListing& listing);
 /// Frames from two lists of "stamp file", each colour image with the depth image nearest in time,

@@ -48,8 +48,9 @@ SE3 read_pose(const std::string& path) {
   return pose_from_row_major(values, path);
 }
 
-// Column or row of the depth image for each one of the colour image, -1 where it lies outside. Both
-// cameras have the same centre and no known baseline, so only the focal lengths matter.
+// Column or row of the depth image for each one of the colour image, -1 where it lies outside.
+// What every user of 7-Scenes does in want of a published calibration: both cameras in one place,
+// the same centre, so that only the focal lengths matter.
 std::vector<int> depth_indices(int size, double centre, double ratio) {
   std::vector<int> indices(static_cast<std::size_t>(size));
   for (int i = 0; i < size; ++i) {
@@ -119,6 +120,7 @@ SequenceListing list_seven_scenes(const std::string& folder, const SequenceOptio
     throw InputError(
         fmt::format("{}: no frame in it, expected frame-NNNNNN.color.png or .color.jpg", folder));
   }
+  if (listing.register_depth) return listing;  // by a calibration with the depth camera's place
   const Camera& camera = listing.camera;
   const auto rows = depth_indices(camera.height, camera.cy, kDepthFocalLength / camera.fy);
   const auto columns = depth_indices(camera.width, camera.cx, kDepthFocalLength / camera.fx);
