@@ -15,6 +15,9 @@ namespace dxslam {
 namespace {
 
 constexpr int kQuickPause = 10;
+constexpr int kPredictionPasses = 3;
+constexpr double kClearAgreement = 0.5;  // share of matches
+constexpr double kSteady = 0.25;         // of the window that was searched
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 int count_map_points(const std::vector<KnownPoint>& known) {
@@ -155,10 +158,10 @@ Tracker::OptionalEstimate Tracker::track_quickly(const Frame& frame, const Keypo
   return std::nullopt;
 }
 
-Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,
-                                                       const SE3& predicted) const {
+std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const KeypointGrid& grid,
+                                                 const std::vector<KnownPoint>& last_known,
+                                                 const SE3& predicted) const {
   const SE3 camera_from_world = predicted.inverse();
-  const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
   std::vector<PixelPrediction> predictions;
   std::vector<std::size_t> source;
   for (std::size_t i = 0; i < last_known.size(); ++i) {
@@ -179,12 +182,42 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
     point.keypoint = m.b;
     known.push_back(point);
   }
-  if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
-  const std::size_t matched = known.size();
-  OptionalEstimate estimate = optimise(frame, predicted, std::move(known));
-  // A wrong prediction leaves matches that agree on nothing.
-  if (estimate && 2 * estimate->known.size() < matched) return std::nullopt;
-  return estimate;
+  return known;
+}
+
+Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,
+                                                       SE3 predicted) const {
+  const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
+  for (int pass = 0; pass < kPredictionPasses; ++pass) {
+    std::vector<KnownPoint> known = match_predicted(frame, grid, last_known, predicted);
+    if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
+    const auto matched = static_cast<double>(known.size());
+    OptionalEstimate estimate = optimise(frame, predicted, std::move(known));
+    if (!estimate) return std::nullopt;
+    const auto agreeing = static_cast<double>(estimate->known.size());
+    if (agreeing >= kClearAgreement * matched) return estimate;
+    // A wrong prediction leaves matches that agree on little, but so does the dark: there the pose
+    // stays where it is when the search goes out from it.
+    if (agreeing < options_.weak_agreement * matched) return std::nullopt;
+    if (agreeing < options_.min_weak_agreement) return std::nullopt;
+    if (pass > 0 && mean_shift(estimate->known, predicted, estimate->world_from_camera) <
+                        kSteady * options_.search_radius) {
+      return estimate;
+    }
+    predicted = estimate->world_from_camera;
+  }
+  return std::nullopt;
+}
+
+double Tracker::mean_shift(const std::vector<KnownPoint>& known, const SE3& one,
+                           const SE3& other) const {
+  double sum = 0.0;
+  const SE3 a = one.inverse();
+  const SE3 b = other.inverse();
+  for (const KnownPoint& k : known) {
+    sum += (camera_.project(a * k.position) - camera_.project(b * k.position)).norm();
+  }
+  return sum / static_cast<double>(known.size()) * 640.0 / camera_.width;
 }
 
 Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame, const LastFrame& source,

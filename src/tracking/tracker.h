@@ -55,7 +55,12 @@ class Tracker {
   OptionalEstimate track_quickly(const Frame& frame, const KeypointGrid& grid);
   /// Matches the last frame's points around the pixels at which a pose puts them.
   OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid,
-                                       const SE3& predicted) const;
+                                       SE3 predicted) const;
+  std::vector<KnownPoint> match_predicted(const Frame& frame, const KeypointGrid& grid,
+                                          const std::vector<KnownPoint>& last_known,
+                                          const SE3& predicted) const;
+  /// Mean distance in pixels at 640 wide between where two poses see the points.
+  double mean_shift(const std::vector<KnownPoint>& known, const SE3& one, const SE3& other) const;
   /// Matches the strongest `keypoints` of either frame.
   OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source,
                                         int keypoints) const;

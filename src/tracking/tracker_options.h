@@ -36,6 +36,8 @@ struct TrackerOptions {
   double local_radius = 5.0;
   double ratio = 0.9;
   int min_predicted_matches = 80;
+  double weak_agreement = 0.35;
+  int min_weak_agreement = 120;
   int quick_keypoints = 500;
   int min_quick_inliers = 60;
   double max_view_angle = 70.0;
@@ -58,6 +60,10 @@ struct TrackerOptions {
     visit("ratio", self.ratio, {0.1, 1}, "", "nearest to second nearest descriptor distance");
     visit("min_predicted_matches", self.min_predicted_matches, {6, 100000}, "matches",
           "with fewer the whole frame is matched by descriptors alone");
+    visit("weak_agreement", self.weak_agreement, {0, 1}, "",
+          "share of predicted matches that agree below which the prediction was wrong");
+    visit("min_weak_agreement", self.min_weak_agreement, {6, 100000}, "matches",
+          "that must agree where fewer than half do");
     visit("quick_keypoints", self.quick_keypoints, {10, 100000}, "keypoints",
           "the strongest of both frames, which are tried before all of them");
     visit("min_quick_inliers", self.min_quick_inliers, {6, 100000}, "points",
