@@ -13,7 +13,7 @@ struct AcceptanceOptions {
   int min_matched = 13;
   int min_inliers = 22;
   double min_ratio = 0.015;
-  double min_coverage = 0.5;
+  double min_coverage = 0.55;
   double min_spread = 0.03;
   double min_confidence = 0.95;
 
