@@ -59,6 +59,20 @@ TEST(SevenScenesReader, RegistersDepthToColour) {
   EXPECT_EQ(depth_at(392), 0.0F);
 }
 
+TEST(SevenScenesReader, RegistersByThePlaceOfTheDepthCameraWhereItIsKnown) {
+  const TestFolder folder;
+  write_sequence(folder, "jpg");
+  folder.write("calibration.yaml",
+               "width: 640\nheight: 480\nfx: 525\nfy: 525\ncx: 320\ncy: 240\n"
+               "depth_camera:\n  fx: 585\n  fy: 585\n  cx: 320\n  cy: 240\n  x: -0.03\n");
+  const auto sequence = open_sequence(folder.path());
+  const auto image = sequence->read(0);
+  ASSERT_TRUE(image.has_value());
+  // Column 420 is at (420 - 320) / 585 * 1.42 - 0.03 = 0.2127 m: 525 * 0.2127 / 1.42 = 78.7.
+  EXPECT_FLOAT_EQ(image->depth.at<float>(240, 320 + 79), 1.420F);
+  EXPECT_EQ(sequence->ground_truth()[0].world_from_camera.translation().z(), -2.0);
+}
+
 TEST(SevenScenesReader, RefusesBrokenPoses) {
   const TestFolder folder;
   write_sequence(folder, "jpg");
