@@ -51,9 +51,8 @@ struct MapSize {
 /// The whole system (paper, Fig. 1): feature extraction in the caller's thread, tracking, and
 /// mapping with loop closing and relocalization, in threads of their own, joined by bounded queues.
 /// Extracting where images come from leaves the processors to it: read ahead in another thread if
-/// there are processors to spare. In deterministic mode the
-/// same steps run one after another in the caller's thread, and equal input gives equal output to
-/// the bit.
+/// there are processors to spare. In deterministic mode the same steps run one after another in the
+/// caller's thread, and equal input gives equal output to the bit.
 ///
 /// process(), try_process() and finish() belong to one thread; on_frame is called by the tracking
 /// thread (in deterministic mode by the caller's). Exceptions of the inner threads come out of the

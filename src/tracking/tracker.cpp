@@ -15,9 +15,6 @@ namespace dxslam {
 namespace {
 
 constexpr int kQuickPause = 10;
-constexpr int kPredictionPasses = 3;
-constexpr double kClearAgreement = 0.5;  // share of matches
-constexpr double kSteady = 0.25;         // of the window that was searched
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 int count_map_points(const std::vector<KnownPoint>& known) {
@@ -160,7 +157,7 @@ Tracker::OptionalEstimate Tracker::track_quickly(const Frame& frame, const Keypo
 
 std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const KeypointGrid& grid,
                                                  const std::vector<KnownPoint>& last_known,
-                                                 const SE3& predicted) const {
+                                                 const SE3& predicted, double radius) const {
   const SE3 camera_from_world = predicted.inverse();
   std::vector<PixelPrediction> predictions;
   std::vector<std::size_t> source;
@@ -169,8 +166,8 @@ std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const Keypo
     if (p.z() <= 0.05) continue;
     const Eigen::Vector2d pixel = camera_.project(p);
     if (!camera_.contains(pixel)) continue;
-    predictions.push_back({last_known[i].keypoint, pixel.cast<float>(),
-                           scaled(options_.search_radius), static_cast<float>(p.z())});
+    predictions.push_back(
+        {last_known[i].keypoint, pixel.cast<float>(), scaled(radius), static_cast<float>(p.z())});
     source.push_back(i);
   }
   const GuidedMatchingOptions matching{traits_.max_distance, static_cast<float>(options_.ratio),
@@ -188,36 +185,23 @@ std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const Keypo
 Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,
                                                        SE3 predicted) const {
   const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
-  for (int pass = 0; pass < kPredictionPasses; ++pass) {
-    std::vector<KnownPoint> known = match_predicted(frame, grid, last_known, predicted);
+  for (const double radius : {options_.search_radius, options_.narrow_radius}) {
+    std::vector<KnownPoint> known = match_predicted(frame, grid, last_known, predicted, radius);
     if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
-    const auto matched = static_cast<double>(known.size());
+    const std::size_t matched = known.size();
     OptionalEstimate estimate = optimise(frame, predicted, std::move(known));
     if (!estimate) return std::nullopt;
-    const auto agreeing = static_cast<double>(estimate->known.size());
-    if (agreeing >= kClearAgreement * matched) return estimate;
-    // A wrong prediction leaves matches that agree on little, but so does the dark: there the pose
-    // stays where it is when the search goes out from it.
-    if (agreeing < options_.weak_agreement * matched) return std::nullopt;
-    if (agreeing < options_.min_weak_agreement) return std::nullopt;
-    if (pass > 0 && mean_shift(estimate->known, predicted, estimate->world_from_camera) <
-                        kSteady * options_.search_radius) {
-      return estimate;
-    }
+    const std::size_t agreeing = estimate->known.size();
+    if (2 * agreeing >= matched) return estimate;
+    // A wrong prediction leaves matches that agree on little, but so does the dark: there a narrow
+    // search from the new pose leaves the wrong matches out.
+    const bool weak =
+        static_cast<int>(agreeing) >= options_.min_weak_agreement &&
+        static_cast<double>(agreeing) >= options_.weak_agreement * static_cast<double>(matched);
+    if (!weak) return std::nullopt;
     predicted = estimate->world_from_camera;
   }
   return std::nullopt;
-}
-
-double Tracker::mean_shift(const std::vector<KnownPoint>& known, const SE3& one,
-                           const SE3& other) const {
-  double sum = 0.0;
-  const SE3 a = one.inverse();
-  const SE3 b = other.inverse();
-  for (const KnownPoint& k : known) {
-    sum += (camera_.project(a * k.position) - camera_.project(b * k.position)).norm();
-  }
-  return sum / static_cast<double>(known.size()) * 640.0 / camera_.width;
 }
 
 Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame, const LastFrame& source,

@@ -58,9 +58,7 @@ class Tracker {
                                        SE3 predicted) const;
   std::vector<KnownPoint> match_predicted(const Frame& frame, const KeypointGrid& grid,
                                           const std::vector<KnownPoint>& last_known,
-                                          const SE3& predicted) const;
-  /// Mean distance in pixels at 640 wide between where two poses see the points.
-  double mean_shift(const std::vector<KnownPoint>& known, const SE3& one, const SE3& other) const;
+                                          const SE3& predicted, double radius) const;
   /// Matches the strongest `keypoints` of either frame.
   OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source,
                                         int keypoints) const;

@@ -33,6 +33,7 @@ struct TrackerOptions {
   int min_start_points = 50;
   int min_inliers = 12;
   double search_radius = 12.0;
+  double narrow_radius = 6.0;
   double local_radius = 5.0;
   double ratio = 0.9;
   int min_predicted_matches = 80;
@@ -55,6 +56,8 @@ struct TrackerOptions {
     visit("min_inliers", self.min_inliers, {6, 1000}, "points", "fewer mean that tracking is lost");
     visit("search_radius", self.search_radius, {1, 500}, "pixels at 640 wide",
           "window around the pixel predicted by constant velocity");
+    visit("narrow_radius", self.narrow_radius, {0.5, 500}, "pixels at 640 wide",
+          "window of the second search, where few matches of the first agree");
     visit("local_radius", self.local_radius, {0.5, 500}, "pixels at 640 wide",
           "window around the pixel of a local map point");
     visit("ratio", self.ratio, {0.1, 1}, "", "nearest to second nearest descriptor distance");
