@@ -100,6 +100,7 @@ std::vector<LoopCandidate> LoopDetector::rank(const BowVector& bow,
     }
   }
   if (!method_.global) return candidates;
+  if (method_.agree) leave_out_unlike(candidates);
   candidates.erase(
       std::remove_if(candidates.begin(), candidates.end(),
                      [](const LoopCandidate& c) { return std::isnan(c.global_distance); }),
@@ -112,6 +113,15 @@ std::vector<LoopCandidate> LoopDetector::rank(const BowVector& bow,
     c.confidence = vetoed ? c.bow_score - kHighestScore : c.bow_score;
   }
   return candidates;
+}
+
+// Candidates come by falling score.
+void LoopDetector::leave_out_unlike(std::vector<LoopCandidate>& candidates) const {
+  if (candidates.empty()) return;
+  const double least = options_.min_relative_score * candidates.front().bow_score;
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [&](const LoopCandidate& c) { return c.bow_score < least; }),
+                   candidates.end());
 }
 
 void LoopDetector::check_geometry(std::vector<LoopCandidate>& candidates,

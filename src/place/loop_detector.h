@@ -76,6 +76,7 @@ class LoopDetector {
  private:
   std::vector<LoopCandidate> rank(const BowVector& bow, const std::vector<float>& global,
                                   const PlaceExclusion& excluded) const;
+  void leave_out_unlike(std::vector<LoopCandidate>& candidates) const;
   void check_geometry(std::vector<LoopCandidate>& candidates, const LoopVerifier& verify) const;
   LoopVerdict judge(const LoopCandidate& candidate) const;
   bool consistent(std::optional<std::uint32_t> place);

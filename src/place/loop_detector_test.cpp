@@ -30,6 +30,7 @@ LoopOptions options_for(const std::string& method) {
   LoopOptions options;
   options.method = method;
   options.candidates = 20;
+  options.min_relative_score = 0.0;
   options.min_score_orb = options.min_score_hf = options.min_score_global = 0.8;
   options.max_distance = options.max_distance_paper = options.max_distance_global = 0.3;
   options.min_inliers_orb = options.min_inliers_hf = 30;
@@ -105,6 +106,17 @@ TEST(LoopDetector, NeedsNoWordsForGlobalOnly) {
   EXPECT_EQ(candidates[1].id, 11U);
   EXPECT_TRUE(candidates[0].accepted());
   EXPECT_EQ(candidates[0].bow_score, 0.0);
+}
+
+TEST(LoopDetector, LooksAtNoPlaceFarLessAlikeByWords) {
+  LoopOptions options = options_for("hf-bow-global");
+  LoopDetector all = make_detector(options);
+  EXPECT_EQ(query(all)[0].id, 11U);
+  options.min_relative_score = 0.7;  // 11 has two thirds of the score of 10
+  LoopDetector detector = make_detector(options);
+  const auto candidates = query(detector);
+  ASSERT_EQ(candidates.size(), 1U);
+  EXPECT_EQ(candidates[0].id, 10U);
 }
 
 TEST(LoopDetector, FindsNoExcludedPlace) {

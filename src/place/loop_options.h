@@ -14,15 +14,16 @@ namespace dxslam {
 /// anew and writes them here (docs/loops.md).
 struct LoopOptions {
   std::string method = "hf-bow-global";
-  int candidates = 5;
+  int candidates = 10;
+  double min_relative_score = 0.95;
   double min_score_orb = 0.405;        // calibrated
   double min_score_hf = 0.322;         // calibrated
-  double min_score_global = 0.313;     // calibrated
+  double min_score_global = 0.322;     // calibrated
   double max_distance = 1.442;         // calibrated
-  double max_distance_paper = 0.794;   // calibrated
+  double max_distance_paper = 0.781;   // calibrated
   double max_distance_global = 0.781;  // calibrated
-  int min_inliers_orb = 20;            // calibrated
-  int min_inliers_hf = 20;             // calibrated
+  int min_inliers_orb = 42;            // calibrated
+  int min_inliers_hf = 29;             // calibrated
   int verified_candidates = 3;
   int consistent_queries = 1;
   int consistent_distance = 10;
@@ -34,6 +35,9 @@ struct LoopOptions {
           "+geometry");
     visit("candidates", self.candidates, {1, 10000}, "places",
           "most similar places by words whose global descriptors are compared (hf-bow-global...)");
+    visit(
+        "min_relative_score", self.min_relative_score, {0, 1}, "",
+        "of these, relative to the best: places less alike by words are left out (hf-bow-global)");
     visit("min_score_orb", self.min_score_orb, {0, 2}, "", "least score of words (orb-bow)");
     visit("min_score_hf", self.min_score_hf, {0, 2}, "", "least score of words (hf-bow)");
     visit("min_score_global", self.min_score_global, {0, 2}, "",
