@@ -21,7 +21,7 @@ struct RunSettings {
   std::string vocabulary;  ///< "": as configured
   std::string map_in;
   std::string map_out;
-  int autosave = 0;  ///< keyframes between two saves of map_out; 0: only at the end
+  int autosave = 0;         ///< keyframes between two saves of map_out; 0: only at the end
   bool thumbnails = false;  ///< pictures of the keyframes into map_out
   bool no_loop_closing = false;
   std::size_t stride = 1;
@@ -36,7 +36,7 @@ struct RunRecord {
   double startup_ms = 0.0;  ///< from the start of the command to the first image
   /// From the start of the command to the first pose of a frame.
   std::optional<double> first_pose_ms;
-  double wall_s = 0.0;      ///< from the first image to the last result
+  double wall_s = 0.0;  ///< from the first image to the last result
   std::size_t frames_offered = 0;
   std::size_t frames_dropped = 0;  ///< real time only: the system was busy
   bool interrupted = false;
