@@ -38,7 +38,7 @@ struct TrackerOptions {
   double ratio = 0.9;
   int min_predicted_matches = 80;
   double weak_agreement = 0.35;
-  int min_weak_agreement = 120;
+  int min_weak_agreement = 200;
   int quick_keypoints = 500;
   int min_quick_inliers = 60;
   double max_view_angle = 70.0;
