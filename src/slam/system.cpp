@@ -62,16 +62,12 @@ void System::set_autosave(int keyframes, MapCallback save) {
   autosave_ = std::move(save);
 }
 
-System::Incoming System::incoming(const RgbdImage& image) {
+void System::process(const RgbdImage& image) {
   require(!finished_, "no image can be processed after finish()");
   if (!mapping_ && !map_loaded_) {
     throw InputError("localization mode has no map, expected one to be loaded");
   }
-  return {image, std::exchange(next_begins_sequence_, false)};
-}
-
-void System::process(const RgbdImage& image) {
-  Extracted extracted = extract(incoming(image));
+  Extracted extracted = extract(image);
   if (!options_.deterministic) {
     extracted_.push(std::move(extracted));
     rethrow();
@@ -121,13 +117,14 @@ void System::hang_first_frames() {
   }
 }
 
-System::Extracted System::extract(const Incoming& incoming) {
+System::Extracted System::extract(const RgbdImage& image) {
+  const bool begins_sequence = std::exchange(next_begins_sequence_, false);
   const Stopwatch watch;
-  const Features features = extractor_->extract(incoming.image.color, false);
-  FramePtr frame = make_frame(incoming.image, features, camera_);
+  const Features features = extractor_->extract(image.color, false);
+  FramePtr frame = make_frame(image, features, camera_);
   const double ms = watch.ms();
   times_.add("extract", ms);
-  return {std::move(frame), incoming.begins_sequence, ms};
+  return {std::move(frame), begins_sequence, ms};
 }
 
 std::optional<KeyframeRequest> System::track(const Extracted& extracted) {

@@ -108,10 +108,6 @@ class System {
   const FeatureExtractor& extractor() const { return *extractor_; }
 
  private:
-  struct Incoming {
-    RgbdImage image;
-    bool begins_sequence = false;
-  };
   struct Extracted {
     FramePtr frame;
     bool begins_sequence = false;
@@ -126,8 +122,7 @@ class System {
     KeyframeId keyframe = kNoId;
   };
 
-  Incoming incoming(const RgbdImage& image);
-  Extracted extract(const Incoming& incoming);
+  Extracted extract(const RgbdImage& image);
   std::optional<KeyframeRequest> track(const Extracted& extracted);
   TrackedFrame track_or_relocalize(const Extracted& extracted,
                                    std::optional<KeyframeRequest>& request);
