@@ -9,9 +9,9 @@
 
 #include "apps/commands.h"
 #include "apps/features_arguments.h"
-#include "apps/process.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
+#include "io/atomic_file.h"
 #include "io/image_file.h"
 #include "io/npz_writer.h"
 

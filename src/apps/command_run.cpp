@@ -15,6 +15,7 @@
 #include "apps/system_setup.h"
 #include "apps/thumbnails.h"
 #include "features/extractor_factory.h"
+#include "io/atomic_file.h"
 #include "io/low_light.h"
 #include "io/trajectory_file.h"
 #include "slam/system.h"

@@ -7,7 +7,6 @@
 
 #include "apps/commands.h"
 #include "apps/map_io.h"
-#include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/system_setup.h"
 #include "evaluation/openloris_result.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include "apps/loops_output.h"
-#include "apps/process.h"
 
 #include <fmt/format.h>
 

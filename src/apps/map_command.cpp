@@ -9,7 +9,6 @@
 
 #include "apps/commands.h"
 #include "apps/map_weld.h"
-#include "apps/process.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "map_files/map_export.h"

@@ -2,13 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "apps/process.h"
 
-#include <fmt/format.h>
-
 #include <atomic>
 #include <csignal>
-#include <filesystem>
-
-#include "core/error.h"
 
 namespace dxslam::apps {
 namespace {
@@ -28,13 +23,5 @@ void catch_signals() {
 }
 
 bool stop_requested() { return requested; }
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
-  }
-}
 
 }  // namespace dxslam::apps

@@ -2,16 +2,11 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
-#include <string>
-
 namespace dxslam::apps {
 
 /// From now on the first SIGINT or SIGTERM only makes stop_requested() true, so that the command
 /// can end in order; a second one ends it at once.
 void catch_signals();
 bool stop_requested();
-
-/// Makes the folder and those above it. Throws InputError if that cannot be done.
-void make_folder(const std::string& folder);
 
 }  // namespace dxslam::apps

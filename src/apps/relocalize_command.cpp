@@ -10,7 +10,6 @@
 #include "apps/commands.h"
 #include "apps/features_arguments.h"
 #include "apps/map_io.h"
-#include "apps/process.h"
 #include "apps/progress.h"
 #include "core/error.h"
 #include "evaluation/statistics.h"

@@ -114,6 +114,14 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
   sync_folder_of(target);
 }
 
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
+  }
+}
+
 void remove_stale_temporaries(const std::string& path) {
   namespace fs = std::filesystem;
   const fs::path target = target_of(path);

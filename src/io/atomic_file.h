@@ -13,6 +13,9 @@ namespace dxslam {
 /// folder, no permission, full disk).
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
+/// Makes the folder and those above it. Throws InputError if that cannot be done.
+void make_folder(const std::string& folder);
+
 /// Removes the temporary files that processes of this machine left behind when they were killed
 /// while write_file_atomically() wrote to `path`.
 void remove_stale_temporaries(const std::string& path);

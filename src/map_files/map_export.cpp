@@ -45,19 +45,10 @@ std::string image_name(const Keyframe& k, std::set<std::string>& taken) {
   return name;
 }
 
-void make_folders(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError(
-        fmt::format("{}: folder cannot be made: {}", folder.string(), error.message()));
-  }
-}
-
 void write_thumbnail(const std::filesystem::path& folder, const StoredMap& stored, KeyframeId id,
                      const std::string& name) {
   if (id >= stored.thumbnails.size() || stored.thumbnails[id].empty()) return;
-  make_folders(folder);
+  make_folder(folder.string());
   std::filesystem::path file = folder / name;
   write_file_atomically(file.replace_extension(".jpg").string(), stored.thumbnails[id]);
 }
@@ -131,7 +122,7 @@ void write_map_colmap(const std::string& folder, const StoredMap& stored) {
   const Camera& camera = stored.header.camera;
   for (std::uint32_t component = 0; component < map.component_count(); ++component) {
     const fs::path model = fs::path(folder) / std::to_string(component);
-    make_folders(model);
+    make_folder(model.string());
     std::string images = "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n# X Y POINT3D_ID ...\n";
     std::set<std::string> names;
     for (const KeyframeId id : map.keyframe_ids()) {
