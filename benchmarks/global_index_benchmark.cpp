@@ -4,26 +4,15 @@
 // How long a question to the index of global descriptors takes: 20 candidates out of all keyframes.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <random>
 
 #include "place/global_index.h"
+#include "place/random_unit.h"
 
 namespace {
 
 using dxslam::GlobalIndex;
-
-std::vector<float> random_unit(std::mt19937& random, std::size_t dimension) {
-  std::normal_distribution<float> normal;
-  std::vector<float> v(dimension);
-  float square = 0.0F;
-  for (float& x : v) {
-    x = normal(random);
-    square += x * x;
-  }
-  for (float& x : v) x /= std::sqrt(square);
-  return v;
-}
+using dxslam::random_unit;
 
 void query(benchmark::State& state) {
   const auto keyframes = static_cast<std::uint32_t>(state.range(0));

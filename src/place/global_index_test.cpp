@@ -9,21 +9,10 @@
 #include <random>
 
 #include "core/error.h"
+#include "place/random_unit.h"
 
 namespace dxslam {
 namespace {
-
-std::vector<float> random_unit(std::mt19937& random, std::size_t dimension) {
-  std::normal_distribution<float> normal;
-  std::vector<float> v(dimension);
-  float square = 0.0F;
-  for (float& x : v) {
-    x = normal(random);
-    square += x * x;
-  }
-  for (float& x : v) x /= std::sqrt(square);
-  return v;
-}
 
 float dot(const std::vector<float>& a, const std::vector<float>& b) {
   float sum = 0.0F;
