@@ -100,6 +100,33 @@ TEST(Orb, ReachesFaintPartsOfTheImage) {
   EXPECT_GT(share_on_the_right("orb", 1.0), 0.3);
 }
 
+// Turned by 180 degrees, a keypoint lies at the other end of the image, but for the pixel it is
+// rounded to; coordinates that are not those of pixel centres would double their error.
+TEST(Orb, PlacesKeypointsOfAllLevelsAtTheirPixels) {
+  const cv::Mat image = test_image(640, 480, 1);
+  cv::Mat turned;
+  cv::rotate(image, turned, cv::ROTATE_180);
+  for (const char* name : {"orb", "opencv_orb"}) {
+    const auto orb = make_extractor(name);
+    const Features a = orb->extract(image, false);
+    const Features b = orb->extract(turned, false);
+    int coarse = 0;
+    double x = 0.0;
+    double y = 0.0;
+    for (const Match& m : match_mutual(a.descriptors, b.descriptors, 40.0F, 0.8F)) {
+      const Keypoint& p = a.keypoints[static_cast<std::size_t>(m.a)];
+      const Keypoint& q = b.keypoints[static_cast<std::size_t>(m.b)];
+      if (p.sigma < 2.5F || p.sigma != q.sigma) continue;
+      ++coarse;
+      x += static_cast<double>(p.x + q.x) - 639.0;
+      y += static_cast<double>(p.y + q.y) - 479.0;
+    }
+    ASSERT_GT(coarse, 40) << name;
+    EXPECT_NEAR(x / coarse, 0.0, 0.5) << name;
+    EXPECT_NEAR(y / coarse, 0.0, 0.5) << name;
+  }
+}
+
 TEST(Orb, ObeysTheNumberOfKeypointsAndRepeatsItself) {
   ExtractorOptions options;
   options.max_keypoints = 300;

@@ -34,8 +34,28 @@ cv::Ptr<cv::ORB> create(int count, int edge) {
                          cv::ORB::HARRIS_SCORE, kPatch, kOpenCvFastThreshold);
 }
 
+double level_scale(int level) { return std::pow(kScaleFactor, level); }
+
+cv::Size level_size(cv::Size image, int level) {
+  return {cvRound(image.width / level_scale(level)), cvRound(image.height / level_scale(level))};
+}
+
+/// Where a keypoint lies in the image. OpenCV multiplies the pixel of a level by the nominal scale;
+/// but it is pixel centres that scale, and the level's size was rounded: up to 2 pixels apart.
+cv::Point2f pixel_in_image(const cv::KeyPoint& keypoint, cv::Size image) {
+  const cv::Size level = level_size(image, keypoint.octave);
+  const auto nominal = static_cast<float>(level_scale(keypoint.octave));
+  const auto moved = [nominal](float x, int pixels, int level_pixels) {
+    const float scale = static_cast<float>(pixels) / static_cast<float>(level_pixels);
+    return (x / nominal + 0.5F) * scale - 0.5F;
+  };
+  return {moved(keypoint.pt.x, image.width, level.width),
+          moved(keypoint.pt.y, image.height, level.height)};
+}
+
 /// Features by falling score, with their descriptors.
-Features to_features(const std::vector<cv::KeyPoint>& keypoints, const cv::Mat& descriptors) {
+Features to_features(const std::vector<cv::KeyPoint>& keypoints, const cv::Mat& descriptors,
+                     cv::Size image) {
   std::vector<int> order(keypoints.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -47,8 +67,9 @@ Features to_features(const std::vector<cv::KeyPoint>& keypoints, const cv::Mat& 
   features.descriptors.create(static_cast<int>(keypoints.size()), 32, CV_8U);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const cv::KeyPoint& k = keypoints[static_cast<std::size_t>(order[i])];
-    const auto sigma = static_cast<float>(std::pow(kScaleFactor, k.octave));
-    features.keypoints.push_back({k.pt.x, k.pt.y, k.response, sigma});
+    const cv::Point2f pixel = pixel_in_image(k, image);
+    const auto sigma = static_cast<float>(level_scale(k.octave));
+    features.keypoints.push_back({pixel.x, pixel.y, k.response, sigma});
     descriptors.row(order[i]).copyTo(features.descriptors.row(static_cast<int>(i)));
   }
   return features;
@@ -82,7 +103,7 @@ class OpenCvOrbExtractor final : public FeatureExtractor {
     std::vector<cv::KeyPoint> keypoints;
     cv::Mat descriptors;
     orb_->detectAndCompute(grey, cv::noArray(), keypoints, descriptors);
-    Features features = to_features(keypoints, descriptors);
+    Features features = to_features(keypoints, descriptors, grey.size());
     timer_.stop("orb");
     return features;
   }
@@ -141,7 +162,7 @@ class OrbExtractor final : public FeatureExtractor {
     timer_.stop("detect");
     cv::Mat descriptors;
     orb_->compute(grey, keypoints, descriptors);
-    Features features = to_features(keypoints, descriptors);
+    Features features = to_features(keypoints, descriptors, grey.size());
     timer_.stop("describe");
     return features;
   }
@@ -151,10 +172,8 @@ class OrbExtractor final : public FeatureExtractor {
     pyramid_.resize(kLevels);
     pyramid_[0] = grey;
     for (std::size_t level = 1; level < pyramid_.size(); ++level) {
-      const double scale = std::pow(kScaleFactor, static_cast<double>(level));
       cv::resize(pyramid_[level - 1], pyramid_[level],
-                 {cvRound(grey.cols / scale), cvRound(grey.rows / scale)}, 0, 0,
-                 cv::INTER_LINEAR_EXACT);
+                 level_size(grey.size(), static_cast<int>(level)), 0, 0, cv::INTER_LINEAR_EXACT);
     }
   }
 
@@ -185,7 +204,7 @@ class OrbExtractor final : public FeatureExtractor {
       candidates_.push_back({cvRound(corner.pt.x), cvRound(corner.pt.y), corner.response});
     }
     select_keypoints(inside.width, inside.height, count, spread_, kSpreadCell, candidates_);
-    const auto scale = static_cast<float>(std::pow(kScaleFactor, level));
+    const auto scale = static_cast<float>(level_scale(level));
     for (const Candidate& c : candidates_) {
       const int x = c.x + kEdge;
       const int y = c.y + kEdge;
