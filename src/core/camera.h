@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 
 namespace dxslam {
@@ -11,6 +12,8 @@ namespace dxslam {
 /// and the depth sensor that is registered to it. Pixel centres are at integer coordinates.
 /// Plain data; safe to copy and to share between threads.
 struct Camera {
+  static constexpr double kNearest = 0.05;  ///< metres along z; nearer points count as out of view
+
   int width = 0;                                            ///< pixels
   int height = 0;                                           ///< pixels
   double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;            ///< pixels
@@ -47,6 +50,14 @@ struct Camera {
   bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= width - 1.0 &&
            pixel.y() <= height - 1.0;
+  }
+  /// Undistorted pixel of a point in the camera frame; empty if it is behind the camera, nearer than
+  /// kNearest or outside of the image.
+  std::optional<Eigen::Vector2d> project_into_view(const Eigen::Vector3d& point_in_camera) const {
+    if (point_in_camera.z() <= kNearest) return std::nullopt;
+    const Eigen::Vector2d pixel = project(point_in_camera);
+    if (!contains(pixel)) return std::nullopt;
+    return pixel;
   }
 };
 

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "loop_closing/keyframe_group.h"
+#include "map/view_range.h"
 #include "matching/guided_matching.h"
 
 namespace dxslam {
@@ -16,7 +17,7 @@ namespace {
 
 constexpr int kColumns = 8;  // of the grid on which spread is counted
 constexpr int kRows = 6;
-constexpr double kMinViewCosine = 0.5;  // farther round, a point is taken for unseen
+constexpr double kMaxViewAngle = 60.0;  // degrees; farther round, a point is taken for unseen
 constexpr double kMaxDistanceRatio = 2.5;
 constexpr int kMinExpectedInCell = 3;  // points due in a cell that is worth counting
 constexpr int kMinExpected = 40;       // points in view of a neighbour that is worth asking
@@ -191,19 +192,17 @@ class LoopVerifier {
   std::vector<PixelPrediction> predict(const SE3& world_from_camera, double radius) const {
     const SE3 camera_from_world = world_from_camera.inverse();
     const float pixels = static_cast<float>(radius * camera_.width / 640.0);
+    const ViewRange range(kMaxViewAngle, kMaxDistanceRatio);
     std::vector<PixelPrediction> predictions;
     for (int row = 0; row < descriptors_.rows; ++row) {
       const MapPoint& p = point(row);
       const Eigen::Vector3d in_camera = camera_from_world * p.position;
-      if (in_camera.z() <= 0.05) continue;
-      const Eigen::Vector2d pixel = camera_.project(in_camera);
-      if (!camera_.contains(pixel)) continue;
-      const Eigen::Vector3d ray = world_from_camera.translation() - p.position;
-      const double distance = ray.norm();
-      if (ray.dot(p.normal) < kMinViewCosine * distance) continue;
-      const double usual = static_cast<double>(p.distance);
-      if (distance > kMaxDistanceRatio * usual || usual > kMaxDistanceRatio * distance) continue;
-      predictions.push_back({row, pixel.cast<float>(), pixels, 0.0F});
+      const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(in_camera);
+      if (!pixel) continue;
+      if (!range.contains(world_from_camera.translation(), p.position, p.normal, p.distance)) {
+        continue;
+      }
+      predictions.push_back({row, pixel->cast<float>(), pixels, 0.0F});
     }
     return predictions;
   }

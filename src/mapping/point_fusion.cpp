@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "geometry/triangulation.h"
 #include "mapping/local_mapper.h"
@@ -33,15 +34,14 @@ Candidates predict(const Map& map, const std::vector<PointId>& points, const Key
   for (const PointId id : points) {
     const MapPoint& p = map.point(id);
     const Eigen::Vector3d in_camera = camera_from_world * p.position;
-    if (in_camera.z() <= 0.05) continue;
-    const Eigen::Vector2d pixel = camera.project(in_camera);
-    if (!camera.contains(pixel)) continue;
+    const std::optional<Eigen::Vector2d> pixel = camera.project_into_view(in_camera);
+    if (!pixel) continue;
     const Eigen::Vector3d ray = target.world_from_camera.translation() - p.position;
     if (ray.dot(p.normal) < kMinViewCosine * ray.norm()) continue;
     const int row = static_cast<int>(candidates.points.size());
     map.descriptor_of(id).copyTo(candidates.descriptors.row(row));
     candidates.predictions.push_back(
-        {row, pixel.cast<float>(), radius, static_cast<float>(in_camera.z())});
+        {row, pixel->cast<float>(), radius, static_cast<float>(in_camera.z())});
     candidates.points.push_back(id);
   }
   return candidates;

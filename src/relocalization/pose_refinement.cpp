@@ -6,15 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <unordered_map>
 
+#include "map/view_range.h"
 #include "matching/guided_matching.h"
 
 namespace dxslam {
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
-constexpr double kNearest = 0.05;  // metres; nearer points are not looked for
 
 // Areas of the image for the coverage; one with fewer keypoints or points in view says nothing.
 constexpr int kAreaColumns = 8;
@@ -35,7 +34,7 @@ PoseObservation observe(const Camera& camera, const Map& map, const Frame& frame
   const double z = (camera_from_world * o.point_in_world).z();
   const double disparity = camera.bf() / static_cast<double>(frame.depths[i]);
   const double gate = 3.0 * std::sqrt(options.chi2_depth) * o.sigma;
-  if (z > kNearest && std::abs(camera.bf() / z - disparity) < gate) o.disparity = disparity;
+  if (z > Camera::kNearest && std::abs(camera.bf() / z - disparity) < gate) o.disparity = disparity;
   return o;
 }
 
@@ -117,16 +116,6 @@ std::vector<PointId> PoseRefiner::local_points(KeyframeId reference) const {
   return points;
 }
 
-bool PoseRefiner::should_see(const MapPoint& point, const SE3& world_from_camera,
-                             const Eigen::Vector3d& in_camera) const {
-  if (in_camera.z() <= kNearest || !camera_.contains(camera_.project(in_camera))) return false;
-  const Eigen::Vector3d ray = world_from_camera.translation() - point.position;
-  const double distance = ray.norm();
-  if (ray.dot(point.normal) < std::cos(options_.max_view_angle * kDegree) * distance) return false;
-  const double ratio = distance / static_cast<double>(point.distance);
-  return ratio <= options_.max_distance_ratio && ratio * options_.max_distance_ratio >= 1.0;
-}
-
 double PoseRefiner::coverage(const std::vector<Eigen::Vector2f>& in_view,
                              const std::vector<PointMatch>& inliers) const {
   struct Area {
@@ -169,6 +158,7 @@ std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& poi
   std::sort(matched.begin(), matched.end());
   const SE3 camera_from_world = pose.world_from_camera.inverse();
   const float window = static_cast<float>(radius * camera_.width / 640.0);
+  const ViewRange range(options_.max_view_angle, options_.max_distance_ratio);
   std::vector<PixelPrediction> predictions;
   std::vector<PointId> ids;
   std::vector<Eigen::Vector2f> in_view;
@@ -177,8 +167,13 @@ std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& poi
   for (const PointId id : points) {
     const MapPoint& point = map_.point(id);
     const Eigen::Vector3d p = camera_from_world * point.position;
-    if (!should_see(point, pose.world_from_camera, p)) continue;
-    in_view.push_back(camera_.project(p).cast<float>());
+    const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
+    if (!pixel) continue;
+    if (!range.contains(pose.world_from_camera.translation(), point.position, point.normal,
+                        point.distance)) {
+      continue;
+    }
+    in_view.push_back(pixel->cast<float>());
     if (std::binary_search(matched.begin(), matched.end(), id)) continue;
     const int row = static_cast<int>(ids.size());
     predictions.push_back({row, in_view.back(), window, static_cast<float>(p.z())});

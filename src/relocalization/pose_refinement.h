@@ -49,8 +49,6 @@ class PoseRefiner {
                                       RefinedPose& pose) const;
   double coverage(const std::vector<Eigen::Vector2f>& in_view,
                   const std::vector<PointMatch>& inliers) const;
-  bool should_see(const MapPoint& point, const SE3& world_from_camera,
-                  const Eigen::Vector3d& in_camera) const;
 
   const Camera& camera_;
   const DescriptorTraits& traits_;

@@ -3,19 +3,17 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/error.h"
 #include "core/options.h"
+#include "map/view_range.h"
 #include "tracking/keyframe_decision.h"
 
 namespace dxslam {
 namespace {
 
 constexpr int kQuickPause = 10;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 int count_map_points(const std::vector<KnownPoint>& known) {
   return static_cast<int>(
@@ -31,7 +29,11 @@ bool is_same_image(const Frame& a, const Frame& b) {
 
 Tracker::Tracker(const Camera& camera, const DescriptorTraits& traits,
                  const TrackerOptions& options)
-    : camera_(camera), traits_(traits), options_(options) {
+    : camera_(camera),
+      traits_(traits),
+      options_(options),
+      matching_{traits.max_distance, static_cast<float>(options.ratio),
+                static_cast<float>(options.depth_tolerance)} {
   validate_options("tracking", options);
 }
 
@@ -163,18 +165,15 @@ std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const Keypo
   std::vector<std::size_t> source;
   for (std::size_t i = 0; i < last_known.size(); ++i) {
     const Eigen::Vector3d p = camera_from_world * last_known[i].position;
-    if (p.z() <= 0.05) continue;
-    const Eigen::Vector2d pixel = camera_.project(p);
-    if (!camera_.contains(pixel)) continue;
+    const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
+    if (!pixel) continue;
     predictions.push_back(
-        {last_known[i].keypoint, pixel.cast<float>(), scaled(radius), static_cast<float>(p.z())});
+        {last_known[i].keypoint, pixel->cast<float>(), scaled(radius), static_cast<float>(p.z())});
     source.push_back(i);
   }
-  const GuidedMatchingOptions matching{traits_.max_distance, static_cast<float>(options_.ratio),
-                                       static_cast<float>(options_.depth_tolerance)};
   std::vector<KnownPoint> known;
   for (const Match& m :
-       match_guided(predictions, last_.frame->descriptors, frame, grid, {}, matching)) {
+       match_guided(predictions, last_.frame->descriptors, frame, grid, {}, matching_)) {
     KnownPoint point = last_known[source[static_cast<std::size_t>(m.a)]];
     point.keypoint = m.b;
     known.push_back(point);
@@ -279,20 +278,18 @@ Tracker::OptionalEstimate Tracker::optimise(const Frame& frame, const SE3& start
 std::vector<PixelPrediction> Tracker::predict_local_points(const SE3& world_from_camera,
                                                            const std::vector<char>& known) const {
   const SE3 camera_from_world = world_from_camera.inverse();
-  const double min_cosine = std::cos(options_.max_view_angle * kDegree);
+  const ViewRange range(options_.max_view_angle, options_.max_distance_ratio);
   std::vector<PixelPrediction> predictions;
   for (std::size_t i = 0; i < local_->size(); ++i) {
     if (known[i] != 0) continue;
     const Eigen::Vector3d p = camera_from_world * local_->positions[i];
-    if (p.z() <= 0.05) continue;
-    const Eigen::Vector2d pixel = camera_.project(p);
-    if (!camera_.contains(pixel)) continue;
-    const Eigen::Vector3d ray = world_from_camera.translation() - local_->positions[i];
-    const double distance = ray.norm();
-    if (ray.dot(local_->normals[i]) < min_cosine * distance) continue;
-    const double ratio = distance / static_cast<double>(local_->distances[i]);
-    if (ratio > options_.max_distance_ratio || ratio * options_.max_distance_ratio < 1.0) continue;
-    predictions.push_back({static_cast<int>(i), pixel.cast<float>(), scaled(options_.local_radius),
+    const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
+    if (!pixel) continue;
+    if (!range.contains(world_from_camera.translation(), local_->positions[i], local_->normals[i],
+                        local_->distances[i])) {
+      continue;
+    }
+    predictions.push_back({static_cast<int>(i), pixel->cast<float>(), scaled(options_.local_radius),
                            static_cast<float>(p.z())});
   }
   return predictions;
@@ -316,10 +313,8 @@ Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const Key
   }
   const std::vector<PixelPrediction> predictions =
       predict_local_points(estimate.world_from_camera, matched);
-  const GuidedMatchingOptions matching{traits_.max_distance, static_cast<float>(options_.ratio),
-                                       static_cast<float>(options_.depth_tolerance)};
   for (const Match& m :
-       match_guided(predictions, local_->descriptors, frame, grid, taken, matching)) {
+       match_guided(predictions, local_->descriptors, frame, grid, taken, matching_)) {
     const std::size_t i =
         static_cast<std::size_t>(predictions[static_cast<std::size_t>(m.a)].descriptor_row);
     known.push_back({m.b, local_->ids[i], local_->positions[i]});

@@ -81,6 +81,7 @@ class Tracker {
   Camera camera_;
   DescriptorTraits traits_;
   TrackerOptions options_;
+  GuidedMatchingOptions matching_;
   LocalMapPtr local_;
   TrackingState state_ = TrackingState::kNotStarted;
   LastFrame last_;
