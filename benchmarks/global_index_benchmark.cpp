@@ -7,7 +7,7 @@
 #include <random>
 
 #include "place/global_index.h"
-#include "place/random_unit.h"
+#include "core/random_unit.h"
 
 namespace {
 

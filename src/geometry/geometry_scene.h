@@ -5,21 +5,10 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/test_camera.h"
 #include "core/transform_samples.h"
 
 namespace dxslam {
-
-/// The camera of the tests and benchmarks of geometry and optimization: a Kinect's.
-inline Camera test_camera() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = 525.0;
-  camera.fy = 520.0;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  return camera;
-}
 
 inline Eigen::Vector2d random_pixel(SampleSource& source) {
   const double x = source.uniform(0.0, 639.0);

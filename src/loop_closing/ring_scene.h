@@ -10,8 +10,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/camera.h"
 #include "core/features.h"
+#include "core/random_unit.h"
+#include "core/test_camera.h"
 #include "geometry/alignment.h"
 #include "map/map.h"
 
@@ -30,19 +31,12 @@ class RingScene {
     std::uniform_real_distribution<double> depth(2.5, 4.5), height(-1.5, 1.5);
     for (int i = 0; i < n; ++i) angles_.push_back(angle(generator_));
     std::sort(angles_.begin(), angles_.end());
-    std::normal_distribution<float> normal;
-    descriptors_.create(n, 32, CV_32F);
+    descriptors_.create(n, kDimension, CV_32F);
     for (int i = 0; i < n; ++i) {
       points_.push_back(
           at(angles_[static_cast<std::size_t>(i)], depth(generator_), height(generator_)));
-      for (int d = 0; d < descriptors_.cols; ++d) descriptors_.at<float>(i, d) = normal(generator_);
-      descriptors_.row(i) /= cv::norm(descriptors_.row(i));
+      cv::Mat(random_unit(generator_, kDimension)).reshape(1, 1).copyTo(descriptors_.row(i));
     }
-    camera_.width = 640;
-    camera_.height = 480;
-    camera_.fx = camera_.fy = 525.0;
-    camera_.cx = 319.5;
-    camera_.cy = 239.5;
   }
 
   const Camera& camera() const { return camera_; }
@@ -106,6 +100,8 @@ class RingScene {
   }
 
  private:
+  static constexpr int kDimension = 32;
+
   /// Point of the ring's frame: `depth` metres outside the path, `height` below it.
   Eigen::Vector3d at(double angle, double depth, double height) const {
     const double r = radius_ + depth;
@@ -120,7 +116,7 @@ class RingScene {
 
   double radius_;
   std::mt19937 generator_;
-  Camera camera_;
+  Camera camera_ = test_camera();
   std::vector<double> angles_;           // of the points, rising
   std::vector<Eigen::Vector3d> points_;  // in the ring's frame
   cv::Mat descriptors_;

@@ -7,9 +7,10 @@
 #include <random>
 #include <vector>
 
-#include "core/camera.h"
 #include "core/frame.h"
+#include "core/random_unit.h"
 #include "core/se3.h"
+#include "core/test_camera.h"
 
 namespace dxslam {
 
@@ -19,18 +20,11 @@ class PointScene {
  public:
   explicit PointScene(int points = 2500, unsigned seed = 7) : generator_(seed) {
     std::uniform_real_distribution<double> x(-4.0, 4.0), y(-1.5, 1.5), z(2.5, 4.5);
-    std::normal_distribution<float> normal;
-    descriptors_.create(points, 32, CV_32F);
+    descriptors_.create(points, kDimension, CV_32F);
     for (int i = 0; i < points; ++i) {
       points_.emplace_back(x(generator_), y(generator_), z(generator_));
-      for (int d = 0; d < descriptors_.cols; ++d) descriptors_.at<float>(i, d) = normal(generator_);
-      descriptors_.row(i) /= cv::norm(descriptors_.row(i));
+      cv::Mat(random_unit(generator_, kDimension)).reshape(1, 1).copyTo(descriptors_.row(i));
     }
-    camera_.width = 640;
-    camera_.height = 480;
-    camera_.fx = camera_.fy = 525.0;
-    camera_.cx = 319.5;
-    camera_.cy = 239.5;
   }
 
   const Camera& camera() const { return camera_; }
@@ -71,8 +65,10 @@ class PointScene {
   }
 
  private:
+  static constexpr int kDimension = 32;
+
   std::mt19937 generator_;
-  Camera camera_;
+  Camera camera_ = test_camera();
   std::vector<Eigen::Vector3d> points_;
   cv::Mat descriptors_;
 };

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "core/random_unit.h"
 #include "matching/descriptor_distance.h"
 
 namespace dxslam {
@@ -16,11 +17,9 @@ namespace {
 
 cv::Mat random_unit_rows(int rows, int dim, unsigned seed) {
   std::mt19937 generator(seed);
-  std::normal_distribution<float> normal;
   cv::Mat m(rows, dim, CV_32F);
   for (int i = 0; i < rows; ++i) {
-    for (int d = 0; d < dim; ++d) m.at<float>(i, d) = normal(generator);
-    m.row(i) /= cv::norm(m.row(i));
+    cv::Mat(random_unit(generator, static_cast<std::size_t>(dim))).reshape(1, 1).copyTo(m.row(i));
   }
   return m;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/test_camera.h"
 #include "core/transform_samples.h"
 #include "optimization/bundle_adjustment.h"
 
@@ -40,11 +41,7 @@ class BundleSceneMaker {
 
   BundleScene make() {
     BundleScene scene;
-    scene.camera.width = 640;
-    scene.camera.height = 480;
-    scene.camera.fx = scene.camera.fy = 525.0;
-    scene.camera.cx = 319.5;
-    scene.camera.cy = 239.5;
+    scene.camera = test_camera();
     add_poses(scene);
     for (int i = 0; i < options_.points; ++i) add_point(scene, i);
     return scene;

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/error.h"
-#include "place/random_unit.h"
+#include "core/random_unit.h"
 
 namespace dxslam {
 namespace {

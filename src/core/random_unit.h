@@ -9,7 +9,7 @@
 
 namespace dxslam {
 
-/// A direction drawn evenly, as a global descriptor of tests and benchmarks.
+/// A direction drawn evenly: the descriptors of made-up scenes in tests and benchmarks.
 inline std::vector<float> random_unit(std::mt19937& random, std::size_t dimension) {
   std::normal_distribution<float> normal;
   std::vector<float> v(dimension);
