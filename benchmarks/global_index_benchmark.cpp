@@ -6,8 +6,8 @@
 
 #include <random>
 
-#include "place/global_index.h"
 #include "core/random_unit.h"
+#include "place/global_index.h"
 
 namespace {
 

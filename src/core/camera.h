@@ -51,8 +51,8 @@ struct Camera {
     return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= width - 1.0 &&
            pixel.y() <= height - 1.0;
   }
-  /// Undistorted pixel of a point in the camera frame; empty if it is behind the camera, nearer than
-  /// kNearest or outside of the image.
+  /// Undistorted pixel of a point in the camera frame; empty if it is behind the camera, nearer
+  /// than kNearest or outside of the image.
   std::optional<Eigen::Vector2d> project_into_view(const Eigen::Vector3d& point_in_camera) const {
     if (point_in_camera.z() <= kNearest) return std::nullopt;
     const Eigen::Vector2d pixel = project(point_in_camera);

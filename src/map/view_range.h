@@ -15,7 +15,8 @@ class ViewRange {
   /// `max_angle` in degrees from the point's normal; the distance may be up to `max_distance_ratio`
   /// times longer or shorter than usual.
   ViewRange(double max_angle, double max_distance_ratio)
-      : min_cosine_(std::cos(max_angle * std::numbers::pi / 180.0)), max_ratio_(max_distance_ratio) {}
+      : min_cosine_(std::cos(max_angle * std::numbers::pi / 180.0)),
+        max_ratio_(max_distance_ratio) {}
 
   /// Whether it holds at the camera centre; all in world coordinates and metres, `normal` and
   /// `usual_distance` as in MapPoint.
