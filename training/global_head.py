@@ -11,14 +11,16 @@ from torch import Tensor, nn
 from .network import LocalNet, NetworkConfig, RepBlock, conv_bn_relu
 
 ASSIGNMENT_SHARPNESS = 20.0
+REDUCTION = 4  # from the encoder's features to the maps that are aggregated
 
 
 @dataclass(frozen=True)
 class GlobalConfig:
     """Sizes of the global branch."""
 
-    width: int = 128
-    blocks: int = 1
+    width: int = 96  # channels at stride 16
+    deep: int = 128  # channels at stride 32, where the maps are aggregated
+    blocks: int = 1  # RepVGG blocks there
     semantic: int = 112  # channels of the teacher's map that the branch reproduces
     clusters: int = 32
     descriptor: int = 256
@@ -62,19 +64,21 @@ class NetVlad(nn.Module):
 
 
 class GlobalHead(nn.Module):
-    """Encoder features (N,64,H/8,W/8) to semantic maps at stride 16 and a descriptor."""
+    """Encoder features (N,64,H/8,W/8) to semantic maps at stride 32 and a descriptor."""
 
     def __init__(self, inputs: int, config: GlobalConfig = GlobalConfig()) -> None:
         super().__init__()
         self.config = config
         self.trunk = nn.Sequential(
-            conv_bn_relu(inputs, config.width, 2), *[RepBlock(config.width) for _ in range(config.blocks)]
+            conv_bn_relu(inputs, config.width, 2),
+            conv_bn_relu(config.width, config.deep, 2),
+            *[RepBlock(config.deep) for _ in range(config.blocks)],
         )
-        self.semantic = nn.Conv2d(config.width, config.semantic, 1)
+        self.semantic = nn.Conv2d(config.deep, config.semantic, 1)
         self.vlad = NetVlad(config)
 
     def maps(self, features: Tensor) -> Tensor:
-        """Semantic maps (N,112,H/16,W/16)."""
+        """Semantic maps (N,112,H/32,W/32)."""
         return self.semantic(self.trunk(features))
 
     def forward(self, features: Tensor) -> Tensor:

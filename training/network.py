@@ -22,10 +22,10 @@ class NetworkConfig:
     """Sizes of the local part: channels at stride 4 and 8, RepVGG blocks there, channels inside the two heads."""
 
     stem: int = 32
-    stem_blocks: int = 1
+    stem_blocks: int = 0
     width: int = 64
-    blocks: int = 5
-    detector_head: int = 64
+    blocks: int = 4
+    detector_head: int = 32
     descriptor_head: int = 64
     descriptor: int = 64
 

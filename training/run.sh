@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 shared=${DXSLAM_SHARED:-../shared}
 data=$shared/data teacher=$shared/teachers/edgepoint2/edgepoint2_L64.onnx
-steps=30000 decay=5000 semantic=4000 places=2000 photos=3600 out=models/hfnet runs=training/runs
+steps=30000 decay=5000 semantic=8000 places=1500 photos=3600 out=models/hfnet runs=training/runs
 while [ $# -gt 0 ]; do
   case $1 in
     --data) data=$2; shift 2 ;;

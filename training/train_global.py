@@ -18,7 +18,7 @@ from torch.nn import functional as F
 
 from .data import load_photos, load_sequence, photo_files
 from .global_data import FeatureSet, Places, encoder_features, photo_crop, places_of, teacher_maps
-from .global_head import GlobalConfig, GlobalHead, unit
+from .global_head import REDUCTION, GlobalConfig, GlobalHead, unit
 from .network import LocalNet, NetworkConfig, normalise
 
 SCALE = 12.0  # inverse temperature of the place loss
@@ -56,9 +56,9 @@ class Encoder(nn.Module):
 
 
 def window(maps: Tensor, teacher: Tensor | None, height: int, width: int) -> tuple[Tensor, Tensor | None]:
-    """A random even-aligned part of feature maps (and the same part of maps at half their size)."""
-    y = 2 * int(torch.randint((maps.shape[2] - height) // 2 + 1, ()))
-    x = 2 * int(torch.randint((maps.shape[3] - width) // 2 + 1, ()))
+    """A random part of feature maps, whole cells of the head's maps (and the same part of maps at half their size)."""
+    y = REDUCTION * int(torch.randint((maps.shape[2] - height) // REDUCTION + 1, ()))
+    x = REDUCTION * int(torch.randint((maps.shape[3] - width) // REDUCTION + 1, ()))
     part = maps[:, :, y : y + height, x : x + width]
     if teacher is None:
         return part, None
@@ -66,8 +66,9 @@ def window(maps: Tensor, teacher: Tensor | None, height: int, width: int) -> tup
 
 
 def map_loss(found: Tensor, teacher: Tensor) -> Tensor:
-    """One minus the cosine, over all places."""
-    return 1 - F.cosine_similarity(found.float(), teacher.float(), dim=1).mean()
+    """One minus the cosine, over all places; the teacher's finer maps are averaged."""
+    coarse = F.adaptive_avg_pool2d(teacher.float(), found.shape[2:])
+    return 1 - F.cosine_similarity(found.float(), coarse, dim=1).mean()
 
 
 def place_loss(vectors: Tensor, same: Tensor, other: Tensor) -> Tensor:
@@ -161,10 +162,10 @@ class GlobalTrainer:
     def place_terms(self) -> tuple[Tensor, Tensor]:
         """Place loss on frames and photos together, and the map loss on the photos."""
         rows, same, other = self.place_batch()
-        height = 2 * int(torch.randint(18, 29, ()))
-        kitchen, _ = window(self.pick(self.frames, rows), None, height, height * 2 // 3 * 2)
+        height = REDUCTION * int(torch.randint(9, 15, ()))
+        kitchen, _ = window(self.pick(self.frames, rows), None, height, height // 3 * 4)
         chosen = torch.randint(self.photos.features.shape[1], (10,))
-        views = [window(self.pick(self.photos, chosen), self.photos.teacher[chosen], 26, 32) for _ in range(2)]
+        views = [window(self.pick(self.photos, chosen), self.photos.teacher[chosen], 24, 32) for _ in range(2)]
         with torch.autocast("cpu", torch.bfloat16):
             kitchen_maps = self.head.maps(kitchen)
             photo_maps = self.head.maps(torch.cat([v[0] for v in views]))
