@@ -113,6 +113,9 @@ Json loop_table(const System& system) {
                           {"verdict", r.verdict},
                           {"effect", r.effect},
                           {"inliers", r.inliers},
+                          {"found_share", rounded(r.found_share, 1e-4)},
+                          {"covered_share", rounded(r.covered_share, 1e-4)},
+                          {"confirmations", r.confirmations},
                           {"contradiction_m", rounded(r.contradiction, 1e-4)},
                           {"largest_move_m", rounded(r.largest_move, 1e-4)}});
   }

@@ -45,11 +45,11 @@ struct LoopVerificationOptions {
   double min_inlier_ratio = 0.25;
   double min_found_share = 0.06;
   int min_cells = 8;
-  double min_covered_share = 0.45;
+  double min_covered_share = 0.7;
   double depth_tolerance = 0.1;
   double min_depth_share = 0.6;
   int confirming_keyframes = 5;
-  int min_confirmations = 2;
+  int min_confirmations = 3;
   PnpOptions pnp{1000, 0.999, 4.0, 12, 1};
   PoseOptimizerOptions pose;
 

@@ -97,6 +97,9 @@ void Backend::record(const LoopReport& report, const std::vector<LoopCandidate>&
     record.verdict = attempt.verdict();
     record.effect = describe(attempt.plan.effect);
     record.inliers = attempt.verification.inliers;
+    record.found_share = attempt.verification.found_share;
+    record.covered_share = attempt.verification.covered_share;
+    record.confirmations = attempt.verification.confirmations;
     record.contradiction = attempt.plan.contradiction;
     if (record.accepted) record.largest_move = report.change.largest_move;
     records_.push_back(std::move(record));

@@ -26,6 +26,9 @@ struct LoopRecord {
   std::string verdict;  ///< "accepted", or why not
   std::string effect;   ///< on the map: none, weld, bend or join
   int inliers = 0;
+  double found_share = 0.0;    ///< of the points that should be in view
+  double covered_share = 0.0;  ///< of the image's parts where points are due
+  int confirmations = 0;       ///< neighbours of the query that see the place
   double contradiction = 0.0;  ///< metres between the loop and the map before
   double largest_move = 0.0;   ///< metres, of a keyframe
 };
