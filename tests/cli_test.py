@@ -11,6 +11,7 @@ import os
 import re
 import shutil
 import signal
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -337,7 +338,8 @@ class Interruption(Recorded):
 class RealRecordings(unittest.TestCase):
     """Accuracy on real recordings, with room for the spread between machines."""
 
-    def check(self, name, most, *options):
+    def ate(self, name, *options):
+        """Of one deterministic run that tracks every frame, metres."""
         shared = Path(os.environ.get("DXSLAM_SHARED", ROOT.parent / "shared"))
         recording = shared / "data" / name
         if not recording.is_dir():
@@ -350,7 +352,10 @@ class RealRecordings(unittest.TestCase):
             self.assertEqual(summary["tracked"], summary["frames"])
             done = dxslam("eval", "ate", recording, out / "trajectory.txt", "--json", report)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertLess(json.loads(report.read_text())["position"]["rmse"], most)
+            return json.loads(report.read_text())["position"]["rmse"]
+
+    def check(self, name, most, *options):
+        self.assertLess(self.ate(name, *options), most)
 
     def test_redkitchen(self):
         self.check("7scenes_redkitchen", 0.06, "--stride", 5)
@@ -362,7 +367,14 @@ class RealRecordings(unittest.TestCase):
         self.check("7scenes_redkitchen", 0.07, "--features", "orb")
 
     def test_fr1_rpy(self):
-        self.check("tum_fr1_rpy", 0.035)
+        """The median over three seeds of the sampler: on 200 blurred frames one run's error is half chance."""
+        errors = []
+        for seed in (1, 2, 3):
+            with tempfile.NamedTemporaryFile("w", suffix=".yaml") as config:
+                config.write(f"tracking:\n  pnp:\n    seed: {seed}\n")
+                config.flush()
+                errors.append(self.ate("tum_fr1_rpy", "--config", config.name))
+        self.assertLess(statistics.median(errors), 0.035, errors)
 
     def test_hololens(self):
         self.check("hololens", 0.12)

@@ -117,8 +117,8 @@ TEST(ColmapExport, IsAModelForEachComponent) {
     write_map_colmap(folder.path(), stored);
     const std::vector<std::string> cameras = lines_of(folder.read("0/cameras.txt"));
     ASSERT_EQ(cameras.size(), 1U);
-    EXPECT_EQ(cameras[0], k1 == 0.0 ? "1 PINHOLE 640 480 525 525 320 240"
-                                    : "1 FULL_OPENCV 640 480 525 525 320 240 0.05 0 0 0 0 0 0 0");
+    EXPECT_EQ(cameras[0], k1 == 0.0 ? "1 PINHOLE 640 480 525 520 320 240"
+                                    : "1 FULL_OPENCV 640 480 525 520 320 240 0.05 0 0 0 0 0 0 0");
     std::size_t keyframes = 0;
     std::size_t points = 0;
     for (const std::string model : {"0", "1"}) {
