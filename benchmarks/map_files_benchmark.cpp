@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <random>
 
+#include "core/random_unit.h"
+#include "core/test_camera.h"
 #include "map_files/map_file.h"
 
 namespace dxslam {
@@ -18,14 +20,6 @@ constexpr int kKeypoints = 1000;
 constexpr int kBound = 600;
 constexpr int kTrack = 8;
 constexpr int kWindow = 30;  // keyframes that see one place
-
-std::vector<float> unit_vector(int dimension, std::mt19937& random) {
-  std::vector<float> v(static_cast<std::size_t>(dimension));
-  for (float& x : v) x = static_cast<float>(random() % 2001) - 1000.0F;
-  const double norm = cv::norm(v);
-  for (float& x : v) x = static_cast<float>(x / norm);
-  return v;
-}
 
 FramePtr make_frame(int index, std::mt19937& random) {
   auto frame = std::make_shared<Frame>();
@@ -37,20 +31,16 @@ FramePtr make_frame(int index, std::mt19937& random) {
     frame->depths.push_back(2.0F);
     frame->scores.push_back(0.5F);
     frame->sigmas.push_back(1.0F);
-    frame->descriptors.push_back(cv::Mat(unit_vector(64, random)).t());
+    frame->descriptors.push_back(cv::Mat(random_unit(random, 64)).t());
   }
-  frame->global = unit_vector(512, random);
+  frame->global = random_unit(random, 512);
   return frame;
 }
 
 MapSnapshot make_snapshot(int keyframes) {
   std::mt19937 random(1);
   MapSnapshot snapshot;
-  snapshot.header.camera.width = 640;
-  snapshot.header.camera.height = 480;
-  snapshot.header.camera.fx = snapshot.header.camera.fy = 525.0;
-  snapshot.header.camera.cx = 319.5;
-  snapshot.header.camera.cy = 239.5;
+  snapshot.header.camera = test_camera();
   snapshot.header.extractor = "benchmark";
   snapshot.header.traits = {false, 64, 0.9F, 512};
   for (int k = 0; k < keyframes; ++k) {

@@ -367,7 +367,7 @@ class RealRecordings(unittest.TestCase):
         self.check("7scenes_redkitchen", 0.07, "--features", "orb")
 
     def test_fr1_rpy(self):
-        """The median over three seeds of the sampler: on 200 blurred frames one run's error is half chance."""
+        """By three seeds of the sampler: on 200 blurred frames one run's error is half chance."""
         errors = []
         for seed in (1, 2, 3):
             with tempfile.NamedTemporaryFile("w", suffix=".yaml") as config:

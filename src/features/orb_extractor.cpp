@@ -34,7 +34,16 @@ cv::Ptr<cv::ORB> create(int count, int edge) {
                          cv::ORB::HARRIS_SCORE, kPatch, kOpenCvFastThreshold);
 }
 
-double level_scale(int level) { return std::pow(kScaleFactor, level); }
+double level_scale(int level) {
+  static const std::array<double, kLevels> kScales = [] {
+    std::array<double, kLevels> scales{};
+    for (int i = 0; i < kLevels; ++i) {
+      scales[static_cast<std::size_t>(i)] = std::pow(kScaleFactor, i);
+    }
+    return scales;
+  }();
+  return kScales[static_cast<std::size_t>(level)];
+}
 
 cv::Size level_size(cv::Size image, int level) {
   return {cvRound(image.width / level_scale(level)), cvRound(image.height / level_scale(level))};

@@ -4,25 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "core/random_unit.h"
+
 namespace dxslam {
 namespace {
-
-std::vector<float> unit_vector(int dimension, std::mt19937& random) {
-  std::normal_distribution<float> normal;
-  std::vector<float> v(static_cast<std::size_t>(dimension));
-  double sum = 0.0;
-  for (float& x : v) {
-    x = normal(random);
-    sum += static_cast<double>(x) * x;
-  }
-  for (float& x : v) x /= static_cast<float>(std::sqrt(sum));
-  return v;
-}
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0.0;
@@ -40,7 +29,7 @@ TEST(DescriptorCoding, KeepsUnitVectorsInOneByteANumber) {
   std::mt19937 random(3);
   for (const int dimension : {1, 32, 64, 256, 4096}) {
     for (int i = 0; i < 50; ++i) {
-      const std::vector<float> v = unit_vector(dimension, random);
+      const std::vector<float> v = random_unit(random, static_cast<std::size_t>(dimension));
       std::string coded(coded_size(DescriptorCoding::kInt8, dimension), '\0');
       ASSERT_EQ(coded.size(), static_cast<std::size_t>(dimension));
       encode_descriptor(DescriptorCoding::kInt8, v.data(), dimension, coded.data());
@@ -54,7 +43,7 @@ TEST(DescriptorCoding, KeepsUnitVectorsInOneByteANumber) {
 TEST(DescriptorCoding, LosesNothingWhenDoneAgain) {
   std::mt19937 random(4);
   for (int i = 0; i < 500; ++i) {
-    const std::vector<float> v = unit_vector(64, random);
+    const std::vector<float> v = random_unit(random, 64);
     std::string first(64, '\0');
     encode_descriptor(DescriptorCoding::kInt8, v.data(), 64, first.data());
     std::string second(64, '\0');
