@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 Image = NDArray[np.float32]
 Rng = np.random.Generator
 
-LOW_LIGHT_SHARE = 0.42
-PHOTOMETRIC_SHARE = 0.38  # the rest stays as it is, shadows and blur excepted
+LOW_LIGHT_SHARE = 0.32
+PHOTOMETRIC_SHARE = 0.34  # the rest stays as it is, shadows and blur excepted
 
 
 def log_uniform(rng: Rng, low: float, high: float) -> float:

@@ -17,9 +17,9 @@ class LossOptions:
     """Weights and temperatures."""
 
     positive: float = 3.0  # weight of a keypoint cell against an empty one
-    cosine: float = 4.0
+    cosine: float = 2.0
     teacher_nce: float = 1.0
-    view_nce: float = 1.0
+    view_nce: float = 2.0
     scale: float = 20.0  # inverse temperature
     near: float = 6.0  # pixels; closer keypoints are not negatives of one another
 

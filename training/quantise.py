@@ -30,6 +30,7 @@ from .graphs import (
     integer_input,
 )
 from .matching import blocks_of
+from .rounding import round_weights
 
 Tensor = NDArray[np.float32]
 CALIBRATION_IMAGES = 240
@@ -98,9 +99,11 @@ def main() -> None:
 
     local, head = cut_local(whole), cut_head(whole)
     small_local = quantised(local, blocks, [])
+    round_weights(small_local, local, blocks[::2])
     run = ov.Core().compile_model(small_local, "CPU", {"INFERENCE_PRECISION_HINT": "f32"})
     features = [np.array(run([b])[FEATURES]) for b in blocks[::2]]
     small_head = quantised(head, features, tail_nodes(head))
+    round_weights(small_head, head, features)
 
     top = feature_range(small_local)
     integer_input(small_local)

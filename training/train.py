@@ -157,6 +157,8 @@ def record(args: argparse.Namespace, photos: int, frames: int) -> None:
 def main() -> None:
     """Runs until the steps are done, or until asked to stop."""
     args = arguments()
+    if not args.teacher.is_file():
+        raise SystemExit(f"--teacher {args.teacher}: no such file")
     photos, frames = load_photos(photo_files(args.data)), load_sequence(args.data)
     worker = SampleWorker(photos, frames, args.teacher, SampleOptions(seed=args.seed))
     torch.manual_seed(args.seed)
