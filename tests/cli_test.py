@@ -11,7 +11,6 @@ import os
 import re
 import shutil
 import signal
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -367,14 +366,7 @@ class RealRecordings(unittest.TestCase):
         self.check("7scenes_redkitchen", 0.07, "--features", "orb")
 
     def test_fr1_rpy(self):
-        """By three seeds of the sampler: on 200 blurred frames one run's error is half chance."""
-        errors = []
-        for seed in (1, 2, 3):
-            with tempfile.NamedTemporaryFile("w", suffix=".yaml") as config:
-                config.write(f"tracking:\n  pnp:\n    seed: {seed}\n")
-                config.flush()
-                errors.append(self.ate("tum_fr1_rpy", "--config", config.name))
-        self.assertLess(statistics.median(errors), 0.035, errors)
+        self.check("tum_fr1_rpy", 0.025)
 
     def test_hololens(self):
         self.check("hololens", 0.12)

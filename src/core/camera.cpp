@@ -40,6 +40,7 @@ void Camera::validate(const std::string& where) const {
   check("depth_baseline", depth_baseline, 1e-4, 10.0);
   check("disparity_noise", disparity_noise, 1e-3, 100.0);
   check("max_depth", max_depth, 0.01, 1e4);
+  check("readout_time", readout_time, 0.0, 1.0);
 }
 
 Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& pixel) const {

@@ -25,6 +25,9 @@ struct Camera {
   /// of a keypoint's pixel. Nearly the same at every distance.
   double disparity_noise = 0.1;
   double max_depth = 10.0;  ///< metres; farther readings count as missing
+  /// Seconds from the first to the last row of an image, of a rolling shutter that starts with the
+  /// topmost row; 0 for a global shutter.
+  double readout_time = 0.0;
 
   /// Throws InputError, naming the field, if the values cannot be those of a camera.
   void validate(const std::string& where) const;

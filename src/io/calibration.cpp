@@ -32,6 +32,8 @@ struct CameraFields : Camera {
     visit("disparity_noise", self.disparity_noise, {1e-3, 100}, "",
           "deviation of the depth sensor's disparity as a share of a keypoint's");
     visit("max_depth", self.max_depth, {0.01, 1e4}, "m", "farther readings count as missing");
+    visit("readout_time", self.readout_time, {0, 1}, "s",
+          "first to last row of a rolling shutter; 0 = all rows at once");
   }
 };
 

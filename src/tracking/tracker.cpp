@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/options.h"
+#include "core/rolling_shutter.h"
 #include "map/view_range.h"
 #include "tracking/keyframe_decision.h"
 
@@ -14,6 +15,7 @@ namespace dxslam {
 namespace {
 
 constexpr int kQuickPause = 10;
+constexpr double kLongestInterval = 0.15;  // seconds between frames for a velocity to be one
 
 int count_map_points(const std::vector<KnownPoint>& known) {
   return static_cast<int>(
@@ -55,18 +57,32 @@ void Tracker::set_local_map(LocalMapPtr local_map) {
   local_ = std::move(local_map);
 }
 
-TrackedFrame Tracker::track(const FramePtr& frame, std::optional<KeyframeRequest>& request) {
+TrackedFrame Tracker::track(const FramePtr& raw, std::optional<KeyframeRequest>& request) {
   request.reset();
   ++frames_since_keyframe_;
-  OptionalEstimate estimate;
-  if (!local_) {
-    estimate = start(*frame);
-  } else {
-    const KeypointGrid grid(frame->pixels);
-    estimate = track_last_frame(*frame, grid);
-    if (estimate) estimate = track_local_map(*frame, grid, std::move(*estimate));
+  if (!local_) return conclude(raw, start(*raw), request);
+  FramePtr frame = straightened(raw, last_velocity_);
+  KeypointGrid grid(frame->pixels);
+  OptionalEstimate estimate = track_last_frame(*frame, grid);
+  if (!estimate) return conclude(frame, estimate, request);
+  // What was straightened by the last frame's velocity is now by this frame's own.
+  if (const auto velocity = velocity_at(*raw, estimate->world_from_camera)) {
+    frame = straightened(raw, velocity);
+    grid = KeypointGrid(frame->pixels);
   }
-  return conclude(frame, estimate, request);
+  return conclude(frame, track_local_map(*frame, grid, std::move(*estimate)), request);
+}
+
+FramePtr Tracker::straightened(const FramePtr& raw, const std::optional<Vector6d>& velocity) const {
+  return velocity ? without_rolling_shutter(raw, camera_, *velocity) : raw;
+}
+
+std::optional<Vector6d> Tracker::velocity_at(const Frame& frame,
+                                             const SE3& world_from_camera) const {
+  if (camera_.readout_time == 0.0 || !last_.frame) return std::nullopt;
+  const double interval = frame.stamp - last_.frame->stamp;
+  if (!(interval > 0.0) || interval > kLongestInterval) return std::nullopt;
+  return (last_.world_from_camera.inverse() * world_from_camera).log() / interval;
 }
 
 TrackedFrame Tracker::resume(const FramePtr& frame, LocalMapPtr local_map,
@@ -98,6 +114,7 @@ void Tracker::restart() {
   state_ = TrackingState::kNotStarted;
   last_ = {};
   last_from_current_ = SE3();
+  last_velocity_.reset();
   quick_pause_ = 0;
   counts_.clear();
   frames_since_keyframe_ = 0;
@@ -392,8 +409,10 @@ TrackedFrame Tracker::report(const FramePtr& frame, const OptionalEstimate& esti
 void Tracker::remember(const FramePtr& frame, const OptionalEstimate& estimate) {
   if (!estimate) {
     last_from_current_ = SE3();  // no speed is known after a gap; the last good frame is kept
+    last_velocity_.reset();
     return;
   }
+  last_velocity_ = velocity_at(*frame, estimate->world_from_camera);
   if (last_.frame) {
     last_from_current_ = last_.world_from_camera.inverse() * estimate->world_from_camera;
   }

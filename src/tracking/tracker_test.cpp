@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
+#include "core/rolling_shutter.h"
 #include "map/point_scene.h"
 
 namespace dxslam {
@@ -105,6 +109,47 @@ TEST_F(TrackerTest, ACameraAtRestMakesNoKeyframes) {
     tracker_.track(scene_.frame(i, SE3()), request_);
     ASSERT_FALSE(request_.has_value()) << i;
   }
+}
+
+// Pans to and fro with a camera that reads its rows one after another; the largest error of a
+// position when the tracker believes in `readout_time`.
+double worst_position(double readout_time) {
+  PointScene scene;
+  Camera rolling = scene.camera();
+  rolling.readout_time = 0.03;
+  Camera believed = rolling;
+  believed.readout_time = readout_time;
+  Tracker tracker(believed, scene.traits(), TrackerOptions());
+  Map map;
+  std::optional<KeyframeRequest> request;
+  double worst = 0.0;
+  for (int i = 0; i <= 30; ++i) {
+    const double angle = 0.25 * (1.0 - std::cos(0.2 * i));  // up to 86 degrees a second
+    Vector6d velocity = Vector6d::Zero();
+    velocity(4) = 0.25 * 0.2 * 30.0 * std::sin(0.2 * i);
+    const SE3 truth(so3_exp({0.0, angle, 0.0}), Eigen::Vector3d::Zero());
+    // Distorted as by the shutter: undone the other way round.
+    const FramePtr frame = without_rolling_shutter(scene.frame(i, truth, 0.1), rolling, -velocity);
+    const TrackedFrame tracked = tracker.track(frame, request);
+    if (tracked.state != TrackingState::kTracking) return 1e9;
+    worst = std::max(worst, translation_distance(tracked.world_from_camera, truth));
+    if (i > 0) continue;
+    const KeyframeId id = map.add_keyframe(frame, SE3(), kNoId);
+    for (std::size_t k = 0; k < frame->size(); ++k) {
+      if (!frame->has_depth(k)) continue;
+      map.add_point(believed.unproject(frame->pixels[k].cast<double>(), frame->depths[k]), id,
+                    static_cast<std::uint32_t>(k));
+    }
+    tracker.set_local_map(make_local_map(map, id, 1, LocalMapOptions()));
+  }
+  return worst;
+}
+
+TEST(Tracker, UndoesTheRollingShutter) {
+  const double ignored = worst_position(0.0);
+  const double undone = worst_position(0.03);
+  EXPECT_GT(ignored, 0.01);
+  EXPECT_LT(undone, 0.3 * ignored);
 }
 
 TEST(TrackerOptions, NameTheFieldThatIsOutOfRange) {
