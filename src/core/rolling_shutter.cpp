@@ -11,7 +11,8 @@ FramePtr without_rolling_shutter(const FramePtr& raw, const Camera& camera,
   auto frame = std::make_shared<Frame>(*raw);
   for (std::size_t i = 0; i < frame->size(); ++i) {
     const Eigen::Vector2d pixel = raw->pixels[i].cast<double>();
-    // The undistorted row serves for the row of the sensor: they differ by a few pixels of hundreds.
+    // The undistorted row serves for the row of the sensor: they differ by a few pixels of
+    // hundreds.
     const double row = std::clamp(pixel.y() / camera.height, 0.0, 1.0) - 0.5;
     const SE3 middle_from_row = SE3::exp(row * camera.readout_time * velocity);
     const bool has_depth = raw->has_depth(i);
