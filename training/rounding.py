@@ -63,12 +63,13 @@ def second_moments(model: ov.Model, convolution: ov.Node, inputs: list[NDArray])
 def round_weights(small: ov.Model, whole: ov.Model, inputs: list[NDArray]) -> None:
     """In place: new integers for the convolutions of `small`, which NNCF made of `whole`; one after another, so that each is fitted to
     what the ones before it give. Their scales stay."""
+    exact = convolutions(whole)
     for name, convolution in convolutions(small).items():
         scaled = convolution.input_value(1).get_node()
         if scaled.get_type_name() != "Multiply":
             continue  # left in floating point
         scale = scaled.input_value(1).get_node().get_data().astype(np.float64)
-        weights = convolutions(whole)[name].input_value(1).get_node().get_data() / scale
+        weights = exact[name].input_value(1).get_node().get_data() / scale
         moments = second_moments(small, convolution, inputs)
         integers = round_rows(weights.reshape(len(weights), -1), moments).reshape(weights.shape)
         stored = ops.convert(ops.constant(integers.astype(np.int8)), "f32")

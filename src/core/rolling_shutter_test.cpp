@@ -34,8 +34,8 @@ Views look(const Camera& camera, const Vector6d& velocity, bool with_depth) {
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d point(x(generator), y(generator), z(generator));
     Eigen::Vector3d seen = point;
-    for (int step = 0; step < 20;
-         ++step) {  // the row in which it is seen, which depends on the row
+    // When a row is taken depends on the row in which the point is seen, and that on when.
+    for (int step = 0; step < 20; ++step) {
       const double row = camera.project(seen).y() / camera.height - 0.5;
       seen = SE3::exp(row * camera.readout_time * velocity).inverse() * point;
     }

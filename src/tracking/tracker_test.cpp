@@ -14,6 +14,17 @@
 namespace dxslam {
 namespace {
 
+// The first keyframe of a map, at the origin; all its keypoints with depth are points.
+void start_map(Map& map, const FramePtr& frame, const Camera& camera, Tracker& tracker) {
+  const KeyframeId id = map.add_keyframe(frame, SE3(), kNoId);
+  for (std::size_t i = 0; i < frame->size(); ++i) {
+    if (!frame->has_depth(i)) continue;
+    map.add_point(camera.unproject(frame->pixels[i].cast<double>(), frame->depths[i]), id,
+                  static_cast<std::uint32_t>(i));
+  }
+  tracker.set_local_map(make_local_map(map, id, 1, LocalMapOptions()));
+}
+
 // A tracker with a map of one keyframe at the origin in which all keypoints with depth are points.
 class TrackerTest : public testing::Test {
  protected:
@@ -26,13 +37,7 @@ class TrackerTest : public testing::Test {
     ASSERT_EQ(first.state, TrackingState::kTracking);
     ASSERT_TRUE(request.has_value());
     EXPECT_EQ(request->reference, kNoId);
-    const KeyframeId id = map_.add_keyframe(frame, SE3(), kNoId);
-    for (std::size_t i = 0; i < frame->size(); ++i) {
-      if (!frame->has_depth(i)) continue;
-      map_.add_point(scene_.camera().unproject(frame->pixels[i].cast<double>(), frame->depths[i]),
-                     id, static_cast<std::uint32_t>(i));
-    }
-    tracker_.set_local_map(make_local_map(map_, id, 1, LocalMapOptions()));
+    start_map(map_, frame, scene_.camera(), tracker_);
   }
 
   PointScene scene_;
@@ -133,14 +138,7 @@ double worst_position(double readout_time) {
     const TrackedFrame tracked = tracker.track(frame, request);
     if (tracked.state != TrackingState::kTracking) return 1e9;
     worst = std::max(worst, translation_distance(tracked.world_from_camera, truth));
-    if (i > 0) continue;
-    const KeyframeId id = map.add_keyframe(frame, SE3(), kNoId);
-    for (std::size_t k = 0; k < frame->size(); ++k) {
-      if (!frame->has_depth(k)) continue;
-      map.add_point(believed.unproject(frame->pixels[k].cast<double>(), frame->depths[k]), id,
-                    static_cast<std::uint32_t>(k));
-    }
-    tracker.set_local_map(make_local_map(map, id, 1, LocalMapOptions()));
+    if (i == 0) start_map(map, frame, believed, tracker);
   }
   return worst;
 }
