@@ -44,25 +44,6 @@ DXSLAM_SIMD void dot_block(const float* const* rows, int row_count, const float*
   }
 }
 
-void float_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
-  const std::vector<float> packed = pack_panels(b);
-  float block[kRows * kLanes];
-  for (int i = 0; i < a.rows; i += kRows) {
-    const int row_count = std::min(kRows, a.rows - i);
-    const float* rows[kRows];
-    for (int r = 0; r < kRows; ++r) rows[r] = a.ptr<float>(std::min(i + r, a.rows - 1));
-    for (int j = 0; j < b.rows; j += kLanes) {
-      const float* panel = packed.data() + static_cast<std::size_t>(j) * b.cols;
-      const int columns = std::min(kLanes, b.rows - j);
-      dot_block(rows, row_count, panel, a.cols, block, kLanes);
-      for (int r = 0; r < row_count; ++r) {
-        std::copy_n(block + r * kLanes, columns,
-                    similarity + static_cast<std::size_t>(i + r) * b.rows + j);
-      }
-    }
-  }
-}
-
 DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
   return count_differing_bits(a, b, bytes);
 }
@@ -101,18 +82,41 @@ float descriptor_distance(const cv::Mat& a, int row_a, const cv::Mat& b, int row
       differing_bits(a.ptr(row_a), b.ptr(row_b), static_cast<std::size_t>(a.cols)));
 }
 
-void descriptor_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
-  if (a.empty() || b.empty()) return;
-  require(a.type() == b.type() && a.cols == b.cols,
+DescriptorSimilarities::DescriptorSimilarities(const cv::Mat& a, const cv::Mat& b) : a_(a), b_(b) {
+  require(a.empty() || b.empty() || (a.type() == b.type() && a.cols == b.cols),
           "descriptors to compare must be of one type and dimension");
-  if (a.depth() == CV_32F) {
-    float_similarities(a, b, similarity);
+  if (b.depth() == CV_32F) panels_ = pack_panels(b);
+}
+
+void DescriptorSimilarities::of_rows(int first, int count, float* similarity) const {
+  if (a_.depth() != CV_32F) {
+    for (int i = 0; i < count; ++i) {
+      binary_row_similarities(a_.ptr(first + i), b_.ptr(), b_.rows, b_.step[0],
+                              static_cast<std::size_t>(a_.cols),
+                              similarity + static_cast<std::size_t>(i) * b_.rows);
+    }
     return;
   }
-  for (int i = 0; i < a.rows; ++i) {
-    binary_row_similarities(a.ptr(i), b.ptr(), b.rows, b.step[0], static_cast<std::size_t>(a.cols),
-                            similarity + static_cast<std::size_t>(i) * b.rows);
+  float block[kRows * kLanes];
+  for (int i = 0; i < count; i += kRows) {
+    const int row_count = std::min(kRows, count - i);
+    const float* rows[kRows];
+    for (int r = 0; r < kRows; ++r) rows[r] = a_.ptr<float>(first + std::min(i + r, count - 1));
+    for (int j = 0; j < b_.rows; j += kLanes) {
+      const float* panel = panels_.data() + static_cast<std::size_t>(j) * b_.cols;
+      const int columns = std::min(kLanes, b_.rows - j);
+      dot_block(rows, row_count, panel, a_.cols, block, kLanes);
+      for (int r = 0; r < row_count; ++r) {
+        std::copy_n(block + r * kLanes, columns,
+                    similarity + static_cast<std::size_t>(i + r) * b_.rows + j);
+      }
+    }
   }
+}
+
+void descriptor_similarities(const cv::Mat& a, const cv::Mat& b, float* similarity) {
+  if (a.empty() || b.empty()) return;
+  DescriptorSimilarities(a, b).of_rows(0, a.rows, similarity);
 }
 
 }  // namespace dxslam

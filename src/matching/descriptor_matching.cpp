@@ -2,8 +2,10 @@
 // Copyright 2026 The dxslam authors
 #include "matching/descriptor_matching.h"
 
+#include <algorithm>
 #include <limits>
 
+#include "core/simd.h"
 #include "matching/descriptor_distance.h"
 
 namespace dxslam {
@@ -11,25 +13,84 @@ namespace {
 
 constexpr float kNone = -std::numeric_limits<float>::max();
 
+constexpr int kRowsAtOnce = 24;  // of similarities: they stay in the cache
+constexpr int kLanes = 16;
+
+using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
+using Indices = int __attribute__((vector_size(kLanes * sizeof(int)), aligned(4), may_alias));
+
 struct Nearest {
   float best = kNone;
   float second = kNone;
   int index = -1;
-};
 
-Nearest nearest_in_row(const float* row, int n) {
-  Nearest nearest;
-  for (int j = 0; j < n; ++j) {
-    if (row[j] <= nearest.second) continue;
-    if (row[j] > nearest.best) {
-      nearest.second = nearest.best;
-      nearest.best = row[j];
-      nearest.index = j;
-    } else {
-      nearest.second = row[j];
+  // Of equal ones the first is the nearest and the other the second.
+  void take(float value, int at) {
+    if (value > best || (value == best && at < index)) {
+      second = best;
+      best = value;
+      index = at;
+    } else if (value > second) {
+      second = value;
     }
   }
+};
+
+/// The two largest of a row; what is the largest of its column so far is noted there.
+DXSLAM_SIMD Nearest scan_row(const float* row, int n, int i, float* column_best, int* column_row) {
+  Lanes best = Lanes{} + kNone;
+  Lanes second = best;
+  Indices index = {};
+  int j = 0;
+  for (; j + kLanes <= n; j += kLanes) {
+    const Lanes value = *reinterpret_cast<const Lanes*>(row + j);
+    Lanes& in_column = *reinterpret_cast<Lanes*>(column_best + j);
+    Indices& of_row = *reinterpret_cast<Indices*>(column_row + j);
+    const Indices leads = value > in_column;
+    in_column = leads ? value : in_column;
+    of_row = leads ? Indices{} + i : of_row;
+    const Indices nearer = value > best;
+    const Lanes less = nearer ? best : value;
+    second = less > second ? less : second;
+    best = nearer ? value : best;
+    index = nearer ? Indices{} + j : index;
+  }
+  Nearest nearest;
+  for (int lane = 0; lane < kLanes && j > 0; ++lane) {
+    nearest.take(best[lane], index[lane] + lane);
+    nearest.second = std::max(nearest.second, second[lane]);
+  }
+  for (; j < n; ++j) {
+    if (row[j] > column_best[j]) {
+      column_best[j] = row[j];
+      column_row[j] = i;
+    }
+    nearest.take(row[j], j);
+  }
   return nearest;
+}
+
+struct Table {
+  std::vector<Nearest> of_row;
+  std::vector<int> column_row;  ///< the nearest row of each column
+};
+
+Table nearest_of_all(const cv::Mat& a, const cv::Mat& b) {
+  const DescriptorSimilarities similarities(a, b);
+  const std::size_t columns = static_cast<std::size_t>(b.rows);
+  Table table{std::vector<Nearest>(static_cast<std::size_t>(a.rows)), std::vector<int>(columns)};
+  std::vector<float> column_best(columns, kNone);
+  std::vector<float> rows(kRowsAtOnce * columns);
+  for (int first = 0; first < a.rows; first += kRowsAtOnce) {
+    const int count = std::min(kRowsAtOnce, a.rows - first);
+    similarities.of_rows(first, count, rows.data());
+    for (int i = 0; i < count; ++i) {
+      table.of_row[static_cast<std::size_t>(first + i)] =
+          scan_row(rows.data() + static_cast<std::size_t>(i) * columns, b.rows, first + i,
+                   column_best.data(), table.column_row.data());
+    }
+  }
+  return table;
 }
 
 }  // namespace
@@ -38,25 +99,13 @@ std::vector<Match> match_mutual(const cv::Mat& a, const cv::Mat& b, float max_di
                                 float ratio) {
   std::vector<Match> matches;
   if (a.empty() || b.empty()) return matches;
-  const std::size_t columns = static_cast<std::size_t>(b.rows);
-  std::vector<float> similarity(static_cast<std::size_t>(a.rows) * columns);
-  descriptor_similarities(a, b, similarity.data());
-
-  std::vector<float> column_best(columns, kNone);
-  std::vector<int> column_row(columns, -1);
-  for (int i = 0; i < a.rows; ++i) {
-    const float* row = similarity.data() + static_cast<std::size_t>(i) * columns;
-    for (std::size_t j = 0; j < columns; ++j) {
-      const bool better = row[j] > column_best[j];
-      column_best[j] = better ? row[j] : column_best[j];
-      column_row[j] = better ? i : column_row[j];
-    }
-  }
+  const Table table = nearest_of_all(a, b);
   const bool binary = a.depth() != CV_32F;
   for (int i = 0; i < a.rows; ++i) {
-    const Nearest nearest =
-        nearest_in_row(similarity.data() + static_cast<std::size_t>(i) * columns, b.rows);
-    if (nearest.index < 0 || column_row[static_cast<std::size_t>(nearest.index)] != i) continue;
+    const Nearest& nearest = table.of_row[static_cast<std::size_t>(i)];
+    if (nearest.index < 0 || table.column_row[static_cast<std::size_t>(nearest.index)] != i) {
+      continue;
+    }
     const float distance = distance_of_similarity(nearest.best, binary);
     if (distance > max_distance) continue;
     if (nearest.second > kNone && ratio < 1.0F &&

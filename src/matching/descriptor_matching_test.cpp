@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bitset>
+#include <numeric>
 #include <random>
+#include <utility>
 
 #include "core/error.h"
 #include "core/random_unit.h"
@@ -79,6 +82,42 @@ TEST(DescriptorSimilarities, RefuseRowsOfDifferentKinds) {
       descriptor_similarities(random_unit_rows(2, 32, 1), random_bytes(2, 32, 1), out.data()),
       ContractError);
 }
+
+std::vector<int> slow_nearest(const cv::Mat& a, int i, const cv::Mat& b) {
+  std::vector<int> order(static_cast<std::size_t>(b.rows));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int j, int k) {
+    return slow_similarity(a, i, b, j) > slow_similarity(a, i, b, k);
+  });
+  return order;
+}
+
+class MutualMatches : public testing::TestWithParam<std::tuple<int, int, int, float>> {};
+
+// Few bits have many equal distances, among them those of nearest and second nearest.
+TEST_P(MutualMatches, EqualTheSlowReference) {
+  const auto [rows_a, rows_b, bytes, ratio] = GetParam();
+  const cv::Mat a = random_bytes(rows_a, bytes, 5);
+  const cv::Mat b = random_bytes(rows_b, bytes, 6);
+  std::vector<std::pair<int, int>> expected;
+  for (int i = 0; i < rows_a; ++i) {
+    const std::vector<int> order = slow_nearest(a, i, b);
+    if (slow_nearest(b, order[0], a)[0] != i) continue;
+    const float best = -slow_similarity(a, i, b, order[0]);
+    if (rows_b > 1 && ratio < 1.0F && best >= ratio * -slow_similarity(a, i, b, order[1])) continue;
+    expected.emplace_back(i, order[0]);
+  }
+  std::vector<std::pair<int, int>> found;
+  for (const Match& m : match_mutual(a, b, 1000.0F, ratio)) found.emplace_back(m.a, m.b);
+  EXPECT_EQ(found, expected);
+  EXPECT_FALSE(found.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, MutualMatches,
+                         testing::Values(std::tuple{1, 1, 2, 1.0F}, std::tuple{30, 15, 2, 1.0F},
+                                         std::tuple{70, 16, 2, 0.9F}, std::tuple{25, 50, 1, 1.0F},
+                                         std::tuple{90, 83, 3, 0.9F},
+                                         std::tuple{100, 100, 4, 1.0F}));
 
 TEST(MatchMutual, FindsAPermutation) {
   const cv::Mat a = random_unit_rows(50, 64, 3);
