@@ -140,8 +140,9 @@ BundleMerge merge_bundle(const LocalBundle& bundle, const BundleReport& report, 
   return BundleMerger(bundle, report, map).run();
 }
 
-BackgroundBundle::BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line)
-    : camera_(camera), options_(options), in_line_(in_line) {}
+BackgroundBundle::BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line,
+                                   Pause pause)
+    : camera_(camera), options_(options), in_line_(in_line), pause_(std::move(pause)) {}
 
 BackgroundBundle::~BackgroundBundle() {
   cancel();
@@ -161,8 +162,12 @@ void BackgroundBundle::start(const Map& map, std::uint32_t component) {
 }
 
 void BackgroundBundle::adjust(Job& job) const {
+  const auto may_go_on = [&job, pause = pause_] {
+    if (pause) pause();
+    return !job.stop.load(std::memory_order_relaxed);
+  };
   try {
-    job.report = adjust_bundle(camera_, job.bundle.problem, options_, &job.stop);
+    job.report = adjust_bundle(camera_, job.bundle.problem, options_, may_go_on);
   } catch (...) {
     job.error = std::current_exception();
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/pause.h"
 #include "map/map.h"
 #include "mapping/local_bundle.h"
 #include "optimization/bundle_adjustment.h"
@@ -40,8 +41,10 @@ BundleMerge merge_bundle(const LocalBundle& bundle, const BundleReport& report, 
 /// done, and only then the result is merged, by the owner. All calls belong to the owner's thread.
 class BackgroundBundle {
  public:
-  /// `in_line`: start() does the work itself, for runs that must be repeatable.
-  BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line);
+  /// `in_line`: start() does the work itself, for runs that must be repeatable. Each thread calls a
+  /// copy of `pause`.
+  BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line,
+                   Pause pause = {});
   ~BackgroundBundle();  ///< waits for the thread to notice, an iteration at most
   BackgroundBundle(const BackgroundBundle&) = delete;
   BackgroundBundle& operator=(const BackgroundBundle&) = delete;
@@ -73,6 +76,7 @@ class BackgroundBundle {
   Camera camera_;
   BundleOptions options_;
   bool in_line_;
+  Pause pause_;
   std::unique_ptr<Job> job_;
   std::vector<std::unique_ptr<Job>> cancelled_;  ///< their threads are about to end
 };

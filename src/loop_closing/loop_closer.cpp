@@ -11,11 +11,11 @@ const char* LoopAttempt::verdict() const {
 }
 
 LoopCloser::LoopCloser(const Camera& camera, const DescriptorTraits& traits,
-                       const LoopCloserOptions& options, bool repeatable)
+                       const LoopCloserOptions& options, bool repeatable, Pause pause)
     : camera_(camera),
       traits_(traits),
       options_((validate_options("loop_closing", options), options)),
-      bundle_(camera, options.bundle, repeatable) {}
+      bundle_(camera, options.bundle, repeatable, std::move(pause)) {}
 
 LoopReport LoopCloser::consider(Map& map, KeyframeId query,
                                 const std::vector<KeyframeId>& candidates) {

@@ -67,9 +67,9 @@ struct LoopReport {
 class LoopCloser {
  public:
   /// `repeatable`: the bundle is adjusted within consider(), and merged by the next poll().
-  /// Throws InputError for options out of range.
+  /// `pause` is for the adjustment. Throws InputError for options out of range.
   LoopCloser(const Camera& camera, const DescriptorTraits& traits, const LoopCloserOptions& options,
-             bool repeatable);
+             bool repeatable, Pause pause = {});
 
   /// Tries the candidates, best first, until one is accepted. The map is unchanged if none is.
   /// `query` must be in the map; candidates may have been removed meanwhile, and may be of other

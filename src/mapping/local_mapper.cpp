@@ -3,6 +3,7 @@
 #include "mapping/local_mapper.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.h"
 #include "core/options.h"
@@ -11,12 +12,13 @@
 namespace dxslam {
 
 LocalMapper::LocalMapper(const Camera& camera, const DescriptorTraits& traits,
-                         const MappingOptions& options)
-    : camera_(camera), traits_(traits), options_(options) {
+                         const MappingOptions& options, Pause pause)
+    : camera_(camera), traits_(traits), options_(options), pause_(std::move(pause)) {
   validate_options("mapping", options);
 }
 
 MappingReport LocalMapper::insert(const KeyframeRequest& request) {
+  pause();
   SE3 world_from_camera;
   KeyframeId parent = kNoId;
   if (request.reference != kNoId) {
@@ -137,12 +139,16 @@ int LocalMapper::adjust_full_bundle(const BundleOptions& options) {
 }
 
 void LocalMapper::adjust_local_bundle(KeyframeId keyframe, MappingReport& report) {
+  pause();
   LocalBundle bundle = gather_local_bundle(map_, keyframe, camera_, options_);
   report.bundle_keyframes = static_cast<int>(bundle.free_keyframes);
   report.bundle_points = static_cast<int>(bundle.points.size());
   report.bundle_observations = static_cast<int>(bundle.problem.observations.size());
   if (bundle.keyframes.size() < 2) return;
-  const BundleReport result = adjust_bundle(camera_, bundle.problem, options_.bundle);
+  const BundleReport result = adjust_bundle(camera_, bundle.problem, options_.bundle, [this] {
+    pause();
+    return true;
+  });
   if (result.usable) report.outlier_observations = apply_local_bundle(bundle, result, map_);
 }
 

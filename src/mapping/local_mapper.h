@@ -7,6 +7,7 @@
 
 #include "core/camera.h"
 #include "core/features.h"
+#include "core/pause.h"
 #include "map/local_map.h"
 #include "map/map.h"
 #include "mapping/mapping_options.h"
@@ -32,7 +33,8 @@ struct MappingReport {
 /// Belongs to one thread; others see the map through local_map().
 class LocalMapper {
  public:
-  LocalMapper(const Camera& camera, const DescriptorTraits& traits, const MappingOptions& options);
+  LocalMapper(const Camera& camera, const DescriptorTraits& traits, const MappingOptions& options,
+              Pause pause = {});
 
   /// Puts the requested keyframe into the map with its matches and new points from depth. Quick;
   /// afterwards local_map() is what tracking should use until refine() is through.
@@ -62,6 +64,9 @@ class LocalMapper {
     PointId point;
     KeyframeId created_by;
   };
+  void pause() const {
+    if (pause_) pause_();
+  }
   void bind_matches(const KeyframeRequest& request, KeyframeId keyframe);
   int create_points_from_depth(KeyframeId keyframe);
   int create_points_by_triangulation(KeyframeId keyframe);
@@ -74,6 +79,7 @@ class LocalMapper {
   Camera camera_;
   DescriptorTraits traits_;
   MappingOptions options_;
+  Pause pause_;
   Map map_;
   std::vector<Recent> recent_;
   KeyframeId first_of_recording_ = 0;

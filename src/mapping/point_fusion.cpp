@@ -122,6 +122,7 @@ int LocalMapper::fuse_with_neighbours(KeyframeId keyframe) {
                            traits_};
   int fused = 0;
   for (const KeyframeId neighbour : neighbours) {
+    pause();
     fused += fuse_points(points_seen(map_, keyframe), neighbour, camera_, fusion, map_);
   }
   std::vector<PointId> points;
@@ -139,6 +140,7 @@ int LocalMapper::create_points_by_triangulation(KeyframeId keyframe) {
   const Keyframe& here = map_.keyframe(keyframe);
   for (const Covisible& c : map_.best_covisibles(
            keyframe, static_cast<std::size_t>(options_.triangulation_keyframes), 10)) {
+    pause();
     const Keyframe& there = map_.keyframe(c.keyframe);
     const std::vector<int> mine = free_keypoints(here, true);
     const std::vector<int> theirs = free_keypoints(there, false);

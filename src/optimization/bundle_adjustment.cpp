@@ -145,7 +145,7 @@ void write_back(const BundleStage& stage, const BundleState& state, BundleProble
 }  // namespace
 
 BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem,
-                           const BundleOptions& options, const std::atomic<bool>* stop) {
+                           const BundleOptions& options, const MayGoOn& may_go_on) {
   check_indices(problem);
   BundleState state = initial_state(problem);
   BundleReport report;
@@ -158,7 +158,7 @@ BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem,
   stage.active = visible(problem, state);
   stage.held = held_poses(problem);
   stage.iterations = options.iterations;
-  stage.stop = stop;
+  stage.may_go_on = may_go_on;
   if (stage.stopped()) {
     report.cancelled = true;
     return report;

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/se3.h"
+#include "optimization/may_go_on.h"
 
 namespace dxslam {
 
@@ -55,7 +55,7 @@ struct BundleOptions {
 
 struct BundleReport {
   bool usable = false;     ///< the problem was changed to a finite state of no higher cost
-  bool cancelled = false;  ///< `stop` was raised; the problem is then unchanged
+  bool cancelled = false;  ///< it might not go on; the problem is then unchanged
   int iterations = 0;
   double initial_cost = 0.0;
   double final_cost = 0.0;
@@ -66,6 +66,6 @@ struct BundleReport {
 /// without the observations that fail their gate. If no pose is fixed, pose 0 is held.
 /// Changes poses and points in place only on success. Throws ContractError on indices out of range.
 BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem,
-                           const BundleOptions& options, const std::atomic<bool>* stop = nullptr);
+                           const BundleOptions& options, const MayGoOn& may_go_on = {});
 
 }  // namespace dxslam

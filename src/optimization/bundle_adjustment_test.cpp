@@ -148,8 +148,8 @@ TEST(BundleAdjustment, MovesOnlyPointsIfAllPosesAreFixed) {
 TEST(BundleAdjustment, ChangesNothingWhenCancelled) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem problem = scene.problem;
-  const std::atomic<bool> stop{true};
-  const BundleReport report = adjust_bundle(scene.camera, problem, BundleOptions(), &stop);
+  const BundleReport report =
+      adjust_bundle(scene.camera, problem, BundleOptions(), [] { return false; });
   EXPECT_TRUE(report.cancelled);
   EXPECT_FALSE(report.usable);
   expect_same(problem, scene.problem);
@@ -159,8 +159,7 @@ TEST(BundleAdjustment, ChangesNothingWhenCancelled) {
 TEST(BundleAdjustment, RunsToTheEndWhileStopIsNotRaised) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem problem = scene.problem;
-  const std::atomic<bool> stop{false};
-  EXPECT_TRUE(adjust_bundle(scene.camera, problem, BundleOptions(), &stop).usable);
+  EXPECT_TRUE(adjust_bundle(scene.camera, problem, BundleOptions(), [] { return true; }).usable);
 }
 
 TEST(BundleAdjustment, GivesTheSameAnswerTwice) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
 #include <vector>
 
 #include "core/se3.h"
@@ -29,14 +28,14 @@ struct BundleStage {
   std::vector<char> held;    ///< one a pose
   bool robust = true;        ///< Huber kernel whose width is the gate of the observation
   int iterations = 0;
-  const std::atomic<bool>* stop = nullptr;  ///< may be null
+  MayGoOn may_go_on;
 
-  bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
+  bool stopped() const { return may_go_on && !may_go_on(); }
 };
 
 struct BundleStageReport {
   bool usable = false;     ///< the state is finite and of no higher cost than at the start
-  bool cancelled = false;  ///< `stop` was raised; the state is then of no use
+  bool cancelled = false;  ///< it might not go on; the state is then of no use
   int iterations = 0;
 };
 

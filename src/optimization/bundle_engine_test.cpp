@@ -111,8 +111,7 @@ TEST_P(BundleEngineTest, OwnSolverTakesTheStepsThatCeresTakes) {
 
 TEST_P(BundleEngineTest, BothSolversStopWhenTold) {
   prepare(BundleSceneOptions());
-  const std::atomic<bool> stop{true};
-  stage_.stop = &stop;
+  stage_.may_go_on = [] { return false; };
   BundleState state = start_;
   EXPECT_TRUE(minimise_with_schur(stage_, state).cancelled);
   state = start_;

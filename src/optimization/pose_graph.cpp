@@ -95,14 +95,14 @@ class EdgeError final : public ceres::SizedCostFunction<7, 8, 8> {
 
 class StopCallback final : public ceres::IterationCallback {
  public:
-  explicit StopCallback(const std::atomic<bool>* stop) : stop_(stop) {}
-  bool raised() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
+  explicit StopCallback(const MayGoOn& may_go_on) : may_go_on_(may_go_on) {}
+  bool raised() const { return may_go_on_ && !may_go_on_(); }
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
     return raised() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
   }
 
  private:
-  const std::atomic<bool>* stop_;
+  const MayGoOn& may_go_on_;
 };
 
 void check_edges(const PoseGraph& graph) {
@@ -183,11 +183,11 @@ bool finite(const Sim3& s) { return s.matrix().allFinite() && s.scale() > 0.0; }
 }  // namespace
 
 PoseGraphReport optimize_pose_graph(PoseGraph& graph, const PoseGraphOptions& options,
-                                    const std::atomic<bool>* stop) {
+                                    const MayGoOn& may_go_on) {
   check_edges(graph);
   PoseGraphReport report;
   Model model(graph, options);
-  StopCallback callback(stop);
+  StopCallback callback(may_go_on);
   report.cancelled = callback.raised();
   if (report.cancelled) return report;
 

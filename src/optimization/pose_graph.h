@@ -2,10 +2,10 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
-#include <atomic>
 #include <vector>
 
 #include "core/sim3.h"
+#include "optimization/may_go_on.h"
 
 namespace dxslam {
 
@@ -45,7 +45,7 @@ struct PoseGraphOptions {
 
 struct PoseGraphReport {
   bool usable = false;     ///< the graph was changed to a finite state of no higher cost
-  bool cancelled = false;  ///< `stop` was raised; the graph is then unchanged
+  bool cancelled = false;  ///< it might not go on; the graph is then unchanged
   int iterations = 0;
   double initial_cost = 0.0;  ///< half the sum of squared errors in sigma, under the kernel
   double final_cost = 0.0;
@@ -57,6 +57,6 @@ struct PoseGraphReport {
 /// place only on success. Throws ContractError on indices out of range, edges from a node to
 /// itself, and information that is not positive definite.
 PoseGraphReport optimize_pose_graph(PoseGraph& graph, const PoseGraphOptions& options,
-                                    const std::atomic<bool>* stop = nullptr);
+                                    const MayGoOn& may_go_on = {});
 
 }  // namespace dxslam

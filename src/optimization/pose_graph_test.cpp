@@ -150,8 +150,8 @@ TEST(PoseGraph, LeavesNodesWithoutEdgesAlone) {
 TEST(PoseGraph, ChangesNothingWhenCancelled) {
   const LoopScene scene = make_loop(20, 0.0);
   PoseGraph graph = scene.graph;
-  const std::atomic<bool> stop{true};
-  const PoseGraphReport report = optimize_pose_graph(graph, PoseGraphOptions(), &stop);
+  const PoseGraphReport report =
+      optimize_pose_graph(graph, PoseGraphOptions(), [] { return false; });
   EXPECT_TRUE(report.cancelled);
   EXPECT_FALSE(report.usable);
   expect_same(graph, scene.graph);

@@ -18,12 +18,13 @@ LoopSearch make_search(const SystemOptions& options, const FeatureExtractor& ext
 
 }  // namespace
 
-Backend::Backend(const Camera& camera, FeatureExtractor& extractor, const SystemOptions& options)
+Backend::Backend(const Camera& camera, FeatureExtractor& extractor, const SystemOptions& options,
+                 const Pause& pause)
     : options_(options),
       extractor_(extractor),
-      mapper_(camera, extractor.traits(), options.mapping),
+      mapper_(camera, extractor.traits(), options.mapping, pause),
       search_(make_search(options, extractor)),
-      closer_(camera, extractor.traits(), options.loop_closing, options.deterministic),
+      closer_(camera, extractor.traits(), options.loop_closing, options.deterministic, pause),
       relocalizer_(camera, extractor.traits(), options.relocalization),
       consensus_(options.relocalization.consensus) {}
 

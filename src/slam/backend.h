@@ -44,8 +44,9 @@ struct RelocalizationAnswer {
 class Backend {
  public:
   /// `extractor` makes global descriptors of frames extracted before; it must outlive this.
-  /// `features` is the name by which a vocabulary is looked for.
-  Backend(const Camera& camera, FeatureExtractor& extractor, const SystemOptions& options);
+  /// `pause` is called while the map is worked on, see core/pause.h.
+  Backend(const Camera& camera, FeatureExtractor& extractor, const SystemOptions& options,
+          const Pause& pause = {});
 
   /// Goes on with a map made before. The map must be empty so far.
   void load(Map map, std::vector<LoopEdge> closed_loops);

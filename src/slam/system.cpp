@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/options.h"
-#include "slam/thread_priority.h"
 
 namespace dxslam {
 namespace {
@@ -31,7 +30,7 @@ System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor
       extractor_(std::move(extractor)),
       on_frame_(std::move(on_frame)),
       tracker_(camera, extractor_->traits(), options.tracking),
-      backend_(camera, *extractor_, options_),
+      backend_(camera, *extractor_, options_, GiveWay(right_of_way_)),
       extracted_(static_cast<std::size_t>(options.queued_frames)),
       tasks_(static_cast<std::size_t>(options.queued_keyframes)) {
   camera_.validate("calibration");
@@ -119,6 +118,7 @@ void System::hang_first_frames() {
 
 System::Extracted System::extract(const RgbdImage& image) {
   const bool begins_sequence = std::exchange(next_begins_sequence_, false);
+  const RightOfWay::Claim claim(right_of_way_);
   const Stopwatch watch;
   const Features features = extractor_->extract(image.color, false);
   FramePtr frame = make_frame(image, features, camera_);
@@ -161,6 +161,7 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted,
     tracked.state = TrackingState::kLost;
     tracked.keypoints = static_cast<int>(frame->size());
   } else {
+    const RightOfWay::Claim claim(right_of_way_);
     tracked = tracker_.track(frame, request);
   }
   if (tracked.state != TrackingState::kLost) {
@@ -193,7 +194,7 @@ std::optional<TrackedFrame> System::find_place(const FramePtr& frame,
   return tracked;
 }
 
-// In the thread that waits for it: mapping may run at a lower priority.
+// In the thread that waits for it.
 RelocalizationAnswer System::relocalize(const Frame& frame) {
   const Stopwatch watch;
   const std::lock_guard lock(map_mutex_);
@@ -276,7 +277,6 @@ void System::run_tracking() {
 }
 
 void System::run_mapping() {
-  lower_thread_priority(options_.mapping_niceness);
   while (const std::optional<Task> task = tasks_.pop()) {
     const std::lock_guard lock(map_mutex_);
     map_whole_ = false;

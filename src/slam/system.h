@@ -14,6 +14,7 @@
 #include "features/extractor.h"
 #include "slam/backend.h"
 #include "slam/bounded_queue.h"
+#include "slam/right_of_way.h"
 #include "slam/stage_times.h"
 #include "slam/system_options.h"
 #include "tracking/tracker.h"
@@ -149,6 +150,7 @@ class System {
   std::unique_ptr<FeatureExtractor> extractor_;
   FrameCallback on_frame_;
   Tracker tracker_;
+  RightOfWay right_of_way_;  // of extraction and tracking over mapping
   Backend backend_;
   std::vector<TrackedFrame> frames_;
   std::vector<Root> roots_;

@@ -24,7 +24,6 @@ struct SystemOptions {
   bool deterministic = false;
   int queued_frames = 1;
   int queued_keyframes = 1;
-  int mapping_niceness = 10;
   bool final_bundle = true;
   BundleOptions full_bundle{20, 20};
   ExtractorOptions extractor;
@@ -52,8 +51,6 @@ struct SystemOptions {
     visit("queued_frames", self.queued_frames, {1, 1000}, "frames", "most that wait to be tracked");
     visit("queued_keyframes", self.queued_keyframes, {1, 1000}, "keyframes",
           "most keyframes that wait for mapping");
-    visit("mapping_niceness", self.mapping_niceness, {0, 19}, "",
-          "by which the mapping thread steps back behind extraction and tracking (Linux)");
     visit("final_bundle", self.final_bundle, "", "adjust the whole map once more at the end");
     visit.group("full_bundle", self.full_bundle);
     visit.group("extractor", self.extractor);

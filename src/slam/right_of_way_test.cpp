@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "slam/right_of_way.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <optional>
+#include <thread>
+
+namespace dxslam {
+namespace {
+
+constexpr auto kForever = std::chrono::hours(1);
+
+TEST(RightOfWay, NobodyWaitsWithoutAClaim) {
+  RightOfWay way;
+  way.wait(kForever);
+  {
+    const RightOfWay::Claim claim(way);
+  }
+  way.wait(kForever);
+}
+
+TEST(RightOfWay, AWaitEndsWithTheLastClaim) {
+  RightOfWay way;
+  std::optional<RightOfWay::Claim> first(std::in_place, way);
+  std::optional<RightOfWay::Claim> second(std::in_place, way);
+  std::atomic<bool> through{false};
+  std::atomic<bool> last_ended{false};
+  std::thread waiting([&] {
+    way.wait(kForever);
+    through = last_ended.load();
+  });
+  first.reset();
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  last_ended = true;
+  second.reset();
+  waiting.join();
+  EXPECT_TRUE(through);
+}
+
+TEST(RightOfWay, AClaimThatNeverEndsHoldsNobodyForGood) {
+  RightOfWay way;
+  const RightOfWay::Claim claim(way);
+  GiveWay give_way(way);
+  const auto start = GiveWay::Clock::now();
+  for (int i = 0; i < 100; ++i) {
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+    give_way();
+  }
+  EXPECT_GT(GiveWay::Clock::now() - start, std::chrono::milliseconds(15));  // it did wait
+}
+
+}  // namespace
+}  // namespace dxslam
