@@ -125,6 +125,18 @@ TEST_F(LocalMapperTest, DropsPointsThatAreExpectedButNeverFound) {
   EXPECT_EQ(report.culled_points, 20);
 }
 
+TEST_F(LocalMapperTest, PausesBetweenNeighboursAndBetweenStepsOfTheBundle) {
+  int pauses = 0;
+  mapper_ = LocalMapper(scene_.camera(), scene_.traits(), MappingOptions(), [&] { ++pauses; });
+  add(0, SE3());
+  EXPECT_GT(pauses, 0);
+  pauses = 0;
+  Vector6d step = Vector6d::Zero();
+  step(0) = 0.1;
+  add(1, SE3::exp(step));
+  EXPECT_GT(pauses, 4);  // inserted, fused, and at least two steps
+}
+
 TEST_F(LocalMapperTest, IsDeterministic) {
   LocalMapper other(scene_.camera(), scene_.traits(), MappingOptions());
   std::vector<KeyframeRequest> requests;
