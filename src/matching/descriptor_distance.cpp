@@ -36,7 +36,8 @@ DXSLAM_SIMD void dot_block(const float* const* rows, int row_count, const float*
                            float* out, int out_stride) {
   Lanes sum[kRows] = {};
   for (int d = 0; d < dim; ++d) {
-    const Lanes column = *reinterpret_cast<const Lanes*>(panel + d * kLanes);
+    const Lanes column =
+        *reinterpret_cast<const Lanes*>(panel + static_cast<std::ptrdiff_t>(d) * kLanes);
     for (int r = 0; r < kRows; ++r) sum[r] += rows[r][d] * column;
   }
   for (int r = 0; r < row_count; ++r) {
@@ -107,7 +108,7 @@ void DescriptorSimilarities::of_rows(int first, int count, float* similarity) co
       const int columns = std::min(kLanes, b_.rows - j);
       dot_block(rows, row_count, panel, a_.cols, block, kLanes);
       for (int r = 0; r < row_count; ++r) {
-        std::copy_n(block + r * kLanes, columns,
+        std::copy_n(block + static_cast<std::ptrdiff_t>(r) * kLanes, columns,
                     similarity + static_cast<std::size_t>(i + r) * b_.rows + j);
       }
     }

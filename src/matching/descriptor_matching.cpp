@@ -82,12 +82,12 @@ Table nearest_of_all(const cv::Mat& a, const cv::Mat& b) {
   std::vector<float> column_best(columns, kNone);
   std::vector<float> rows(kRowsAtOnce * columns);
   for (int first = 0; first < a.rows; first += kRowsAtOnce) {
-    const int count = std::min(kRowsAtOnce, a.rows - first);
-    similarities.of_rows(first, count, rows.data());
-    for (int i = 0; i < count; ++i) {
-      table.of_row[static_cast<std::size_t>(first + i)] =
-          scan_row(rows.data() + static_cast<std::size_t>(i) * columns, b.rows, first + i,
-                   column_best.data(), table.column_row.data());
+    const int end = std::min(first + kRowsAtOnce, a.rows);
+    similarities.of_rows(first, end - first, rows.data());
+    for (int i = first; i < end; ++i) {
+      const float* row = rows.data() + static_cast<std::size_t>(i - first) * columns;
+      table.of_row[static_cast<std::size_t>(i)] =
+          scan_row(row, b.rows, i, column_best.data(), table.column_row.data());
     }
   }
   return table;

@@ -18,7 +18,9 @@ class RightOfWay {
     explicit Claim(RightOfWay& way);
     ~Claim();
     Claim(const Claim&) = delete;
+    Claim(Claim&&) = delete;
     Claim& operator=(const Claim&) = delete;
+    Claim& operator=(Claim&&) = delete;
 
    private:
     RightOfWay& way_;
