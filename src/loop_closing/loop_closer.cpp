@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "loop_closing/loop_closer.h"
 
+#include <utility>
+
 #include "core/options.h"
 
 namespace dxslam {
