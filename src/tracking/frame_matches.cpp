@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "tracking/frame_matches.h"
 
+#include <algorithm>
+
 namespace dxslam {
 
 std::vector<KnownPoint> known_points(const LastFrame& last, const LocalMap& local,
@@ -49,6 +51,17 @@ int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi
     ++dropped;
   }
   return dropped;
+}
+
+int count_near(const Camera& camera, const Frame& frame, const SE3& world_from_camera,
+               const std::vector<KnownPoint>& known, double radius) {
+  const SE3 camera_from_world = world_from_camera.inverse();
+  return static_cast<int>(std::count_if(known.begin(), known.end(), [&](const KnownPoint& k) {
+    const Eigen::Vector3d p = camera_from_world * k.position;
+    if (p.z() <= Camera::kNearest) return false;
+    const Eigen::Vector2d pixel = frame.pixels[static_cast<std::size_t>(k.keypoint)].cast<double>();
+    return (camera.project(p) - pixel).squaredNorm() <= radius * radius;
+  }));
 }
 
 }  // namespace dxslam

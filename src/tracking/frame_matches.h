@@ -40,6 +40,10 @@ std::vector<PoseObservation> pose_observations(const Frame& frame,
 int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi2_pixel,
                       std::vector<PoseObservation>& observations);
 
+/// How many of the points `world_from_camera` puts within `radius` pixels of their keypoints.
+int count_near(const Camera& camera, const Frame& frame, const SE3& world_from_camera,
+               const std::vector<KnownPoint>& known, double radius);
+
 /// Disparity of a keypoint for the optimisers; 0 where it has no depth.
 inline double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera) {
   return frame.has_depth(keypoint) ? camera.bf() / static_cast<double>(frame.depths[keypoint])

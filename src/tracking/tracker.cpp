@@ -202,18 +202,20 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
                                                        SE3 predicted) const {
   const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
   for (const double radius : {options_.search_radius, options_.narrow_radius}) {
-    std::vector<KnownPoint> known = match_predicted(frame, grid, last_known, predicted, radius);
+    const std::vector<KnownPoint> known =
+        match_predicted(frame, grid, last_known, predicted, radius);
     if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
-    const std::size_t matched = known.size();
-    OptionalEstimate estimate = optimise(frame, predicted, std::move(known));
+    const double matched = static_cast<double>(known.size());
+    OptionalEstimate estimate = optimise(frame, predicted, known);
     if (!estimate) return std::nullopt;
-    const std::size_t agreeing = estimate->known.size();
-    if (2 * agreeing >= matched) return estimate;
-    // A wrong prediction leaves matches that agree on little, but so does the dark: there a narrow
-    // search from the new pose leaves the wrong matches out.
+    // In the dark correct matches scatter by more than the gate of the pose: most of them are near
+    // all the same, while a wrong prediction leaves matches that agree on little.
+    const int agreeing = count_near(camera_, frame, estimate->world_from_camera, known,
+                                    scaled(options_.agreement_radius));
+    if (agreeing >= 0.5 * matched) return estimate;
+    // Between the two, a narrow search from the new pose leaves wrong matches out.
     const bool weak =
-        static_cast<int>(agreeing) >= options_.min_weak_agreement &&
-        static_cast<double>(agreeing) >= options_.weak_agreement * static_cast<double>(matched);
+        agreeing >= options_.min_weak_agreement && agreeing >= options_.weak_agreement * matched;
     if (!weak) return std::nullopt;
     predicted = estimate->world_from_camera;
   }

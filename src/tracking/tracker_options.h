@@ -37,6 +37,7 @@ struct TrackerOptions {
   double local_radius = 5.0;
   double ratio = 0.9;
   int min_predicted_matches = 80;
+  double agreement_radius = 3.0;
   double weak_agreement = 0.35;
   int min_weak_agreement = 200;
   int quick_keypoints = 500;
@@ -63,6 +64,8 @@ struct TrackerOptions {
     visit("ratio", self.ratio, {0.1, 1}, "", "nearest to second nearest descriptor distance");
     visit("min_predicted_matches", self.min_predicted_matches, {6, 100000}, "matches",
           "with fewer the whole frame is matched by descriptors alone");
+    visit("agreement_radius", self.agreement_radius, {0.1, 100}, "pixels at 640 wide",
+          "predicted matches so near to where the pose found puts their points agree with it");
     visit("weak_agreement", self.weak_agreement, {0, 1}, "",
           "share of predicted matches that agree below which the prediction was wrong");
     visit("min_weak_agreement", self.min_weak_agreement, {6, 100000}, "matches",
