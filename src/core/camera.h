@@ -22,9 +22,9 @@ struct Camera {
   double depth_factor = 1000.0;   ///< raw depth units a metre (16-bit image / factor = metres)
   double depth_baseline = 0.075;  ///< metres, between the projector or cameras of the depth sensor
   /// Standard deviation of the depth sensor's disparity, fx * baseline / depth, as a share of that
-  /// of a keypoint's pixel. Nearly the same at every distance; 0.19 and 0.25 with two Kinects
-  /// (docs/results.md).
-  double disparity_noise = 0.2;
+  /// of a keypoint's pixel. Nearly the same at every distance; 0.12 with a time-of-flight camera,
+  /// 0.19 and 0.25 with two Kinects (docs/results.md).
+  double disparity_noise = 0.1;
   double max_depth = 10.0;  ///< metres; farther readings count as missing
   /// Seconds from the first to the last row of an image, of a rolling shutter that starts with the
   /// topmost row; 0 for a global shutter.
@@ -59,8 +59,8 @@ struct Camera {
   /// than kNearest or outside of the image.
   std::optional<Eigen::Vector2d> project_into_view(const Eigen::Vector3d& point_in_camera) const {
     if (point_in_camera.z() <= kNearest) return std::nullopt;
-    const Eigen::Vector2d pixel = project(point_in_camera);
-    if (!contains(pixel)) return std::nullopt;
+    std::optional<Eigen::Vector2d> pixel = project(point_in_camera);
+    if (!contains(*pixel)) pixel.reset();
     return pixel;
   }
 };

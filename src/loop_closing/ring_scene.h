@@ -116,13 +116,7 @@ class RingScene {
 
   double radius_;
   std::mt19937 generator_;
-  static Camera exact_camera() {
-    Camera camera = test_camera();
-    camera.disparity_noise = 0.1;  // the scene's depths are exact
-    return camera;
-  }
-
-  Camera camera_ = exact_camera();
+  Camera camera_ = test_camera();
   std::vector<double> angles_;           // of the points, rising
   std::vector<Eigen::Vector3d> points_;  // in the ring's frame
   cv::Mat descriptors_;
