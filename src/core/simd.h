@@ -10,3 +10,15 @@
 #else
 #define DXSLAM_SIMD
 #endif
+
+namespace dxslam {
+
+/// Numbers that are worked on at once, wherever they lie in memory: one AVX-512 register, two of
+/// AVX2, four of SSE. Keep them inside functions: how they are passed depends on the instruction
+/// set.
+constexpr int kSimdLanes = 16;
+using FloatLanes =
+    float __attribute__((vector_size(kSimdLanes * sizeof(float)), aligned(4), may_alias));
+using IntLanes = int __attribute__((vector_size(kSimdLanes * sizeof(int)), aligned(4), may_alias));
+
+}  // namespace dxslam

@@ -15,33 +15,30 @@
 namespace dxslam {
 namespace {
 
-constexpr int kLanes = 16;  // columns of a panel: one AVX-512 register, two of AVX2
-constexpr int kRows = 6;    // rows of a block, so that the accumulators stay in registers
+constexpr int kRows = 6;  // rows of a block, so that the accumulators stay in registers
 
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
-
-// Rows of b transposed into panels of kLanes columns: panel[d * kLanes + lane].
+// Rows of b transposed into panels of kSimdLanes columns: panel[d * kSimdLanes + lane].
 std::vector<float> pack_panels(const cv::Mat& b) {
-  const int panels = (b.rows + kLanes - 1) / kLanes;
-  std::vector<float> packed(static_cast<std::size_t>(panels) * kLanes * b.cols, 0.0F);
+  const int panels = (b.rows + kSimdLanes - 1) / kSimdLanes;
+  std::vector<float> packed(static_cast<std::size_t>(panels) * kSimdLanes * b.cols, 0.0F);
   for (int j = 0; j < b.rows; ++j) {
-    float* panel = packed.data() + static_cast<std::size_t>(j / kLanes) * kLanes * b.cols;
+    float* panel = packed.data() + static_cast<std::size_t>(j / kSimdLanes) * kSimdLanes * b.cols;
     const float* row = b.ptr<float>(j);
-    for (int d = 0; d < b.cols; ++d) panel[d * kLanes + j % kLanes] = row[d];
+    for (int d = 0; d < b.cols; ++d) panel[d * kSimdLanes + j % kSimdLanes] = row[d];
   }
   return packed;
 }
 
 DXSLAM_SIMD void dot_block(const float* const* rows, int row_count, const float* panel, int dim,
                            float* out, int out_stride) {
-  Lanes sum[kRows] = {};
+  FloatLanes sum[kRows] = {};
   for (int d = 0; d < dim; ++d) {
-    const Lanes column =
-        *reinterpret_cast<const Lanes*>(panel + static_cast<std::ptrdiff_t>(d) * kLanes);
+    const FloatLanes column =
+        *reinterpret_cast<const FloatLanes*>(panel + static_cast<std::ptrdiff_t>(d) * kSimdLanes);
     for (int r = 0; r < kRows; ++r) sum[r] += rows[r][d] * column;
   }
   for (int r = 0; r < row_count; ++r) {
-    std::memcpy(out + static_cast<std::ptrdiff_t>(r) * out_stride, &sum[r], sizeof(Lanes));
+    std::memcpy(out + static_cast<std::ptrdiff_t>(r) * out_stride, &sum[r], sizeof(FloatLanes));
   }
 }
 
@@ -58,13 +55,14 @@ DXSLAM_SIMD void binary_row_similarities(const std::uint8_t* a, const std::uint8
 }
 
 DXSLAM_SIMD float dot(const float* a, const float* b, int dim) {
-  Lanes sum = {};
+  FloatLanes sum = {};
   int d = 0;
-  for (; d + kLanes <= dim; d += kLanes) {
-    sum += *reinterpret_cast<const Lanes*>(a + d) * *reinterpret_cast<const Lanes*>(b + d);
+  for (; d + kSimdLanes <= dim; d += kSimdLanes) {
+    sum +=
+        *reinterpret_cast<const FloatLanes*>(a + d) * *reinterpret_cast<const FloatLanes*>(b + d);
   }
   float total = 0.0F;
-  for (int lane = 0; lane < kLanes; ++lane) total += sum[lane];
+  for (int lane = 0; lane < kSimdLanes; ++lane) total += sum[lane];
   for (; d < dim; ++d) total += a[d] * b[d];
   return total;
 }
@@ -98,17 +96,17 @@ void DescriptorSimilarities::of_rows(int first, int count, float* similarity) co
     }
     return;
   }
-  float block[kRows * kLanes];
+  float block[kRows * kSimdLanes];
   for (int i = 0; i < count; i += kRows) {
     const int row_count = std::min(kRows, count - i);
     const float* rows[kRows];
     for (int r = 0; r < kRows; ++r) rows[r] = a_.ptr<float>(first + std::min(i + r, count - 1));
-    for (int j = 0; j < b_.rows; j += kLanes) {
+    for (int j = 0; j < b_.rows; j += kSimdLanes) {
       const float* panel = panels_.data() + static_cast<std::size_t>(j) * b_.cols;
-      const int columns = std::min(kLanes, b_.rows - j);
-      dot_block(rows, row_count, panel, a_.cols, block, kLanes);
+      const int columns = std::min(kSimdLanes, b_.rows - j);
+      dot_block(rows, row_count, panel, a_.cols, block, kSimdLanes);
       for (int r = 0; r < row_count; ++r) {
-        std::copy_n(block + static_cast<std::ptrdiff_t>(r) * kLanes, columns,
+        std::copy_n(block + static_cast<std::ptrdiff_t>(r) * kSimdLanes, columns,
                     similarity + static_cast<std::size_t>(i + r) * b_.rows + j);
       }
     }

@@ -14,10 +14,6 @@ namespace {
 constexpr float kNone = -std::numeric_limits<float>::max();
 
 constexpr int kRowsAtOnce = 24;  // of similarities: they stay in the cache
-constexpr int kLanes = 16;
-
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
-using Indices = int __attribute__((vector_size(kLanes * sizeof(int)), aligned(4), may_alias));
 
 struct Nearest {
   float best = kNone;
@@ -38,25 +34,25 @@ struct Nearest {
 
 /// The two largest of a row; what is the largest of its column so far is noted there.
 DXSLAM_SIMD Nearest scan_row(const float* row, int n, int i, float* column_best, int* column_row) {
-  Lanes best = Lanes{} + kNone;
-  Lanes second = best;
-  Indices index = {};
+  FloatLanes best = FloatLanes{} + kNone;
+  FloatLanes second = best;
+  IntLanes index = {};
   int j = 0;
-  for (; j + kLanes <= n; j += kLanes) {
-    const Lanes value = *reinterpret_cast<const Lanes*>(row + j);
-    Lanes& in_column = *reinterpret_cast<Lanes*>(column_best + j);
-    Indices& of_row = *reinterpret_cast<Indices*>(column_row + j);
-    const Indices leads = value > in_column;
+  for (; j + kSimdLanes <= n; j += kSimdLanes) {
+    const FloatLanes value = *reinterpret_cast<const FloatLanes*>(row + j);
+    FloatLanes& in_column = *reinterpret_cast<FloatLanes*>(column_best + j);
+    IntLanes& of_row = *reinterpret_cast<IntLanes*>(column_row + j);
+    const IntLanes leads = value > in_column;
     in_column = leads ? value : in_column;
-    of_row = leads ? Indices{} + i : of_row;
-    const Indices nearer = value > best;
-    const Lanes less = nearer ? best : value;
+    of_row = leads ? IntLanes{} + i : of_row;
+    const IntLanes nearer = value > best;
+    const FloatLanes less = nearer ? best : value;
     second = less > second ? less : second;
     best = nearer ? value : best;
-    index = nearer ? Indices{} + j : index;
+    index = nearer ? IntLanes{} + j : index;
   }
   Nearest nearest;
-  for (int lane = 0; lane < kLanes && j > 0; ++lane) {
+  for (int lane = 0; lane < kSimdLanes && j > 0; ++lane) {
     nearest.take(best[lane], index[lane] + lane);
     nearest.second = std::max(nearest.second, second[lane]);
   }

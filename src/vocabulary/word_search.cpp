@@ -13,11 +13,8 @@
 namespace dxslam {
 namespace {
 
-constexpr int kGroup = 8;           // descents side by side, so that memory is waited for together
-constexpr std::size_t kLine = 64;   // bytes of a cache line
-constexpr std::size_t kLanes = 16;  // floats of one AVX-512 register
-
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
+constexpr int kGroup = 8;          // descents side by side, so that memory is waited for together
+constexpr std::size_t kLine = 64;  // bytes of a cache line
 
 struct FloatDistance {
   using Value = float;
@@ -25,16 +22,16 @@ struct FloatDistance {
                                 std::size_t dimension) {
     const auto* a = reinterpret_cast<const float*>(a_bytes);
     const auto* b = reinterpret_cast<const float*>(b_bytes);
-    Lanes sum = {};
+    FloatLanes sum = {};
     std::size_t d = 0;
-    for (; d + kLanes <= dimension; d += kLanes) {
-      const Lanes difference =
-          *reinterpret_cast<const Lanes*>(a + d) - *reinterpret_cast<const Lanes*>(b + d);
+    for (; d + kSimdLanes <= dimension; d += kSimdLanes) {
+      const FloatLanes difference =
+          *reinterpret_cast<const FloatLanes*>(a + d) - *reinterpret_cast<const FloatLanes*>(b + d);
       sum += difference * difference;
     }
-    float part[kLanes];
+    float part[kSimdLanes];
     std::memcpy(part, &sum, sizeof(part));
-    for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
+    for (std::size_t half = kSimdLanes / 2; half > 0; half /= 2) {
       for (std::size_t i = 0; i < half; ++i) part[i] += part[i + half];
     }
     float total = part[0];
