@@ -10,6 +10,7 @@
 
 #include "optimization/bundle_engine.h"
 #include "optimization/quiet_log.h"
+#include "optimization/stop_callback.h"
 
 namespace dxslam {
 namespace {
@@ -84,17 +85,6 @@ class Reprojection final : public ceres::SizedCostFunction<Rows, 7, 3> {
  private:
   const Camera& camera_;
   const BundleProblem::Observation& observation_;
-};
-
-class StopCallback final : public ceres::IterationCallback {
- public:
-  explicit StopCallback(const BundleStage& stage) : stage_(stage) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return stage_.stopped() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const BundleStage& stage_;
 };
 
 /// Owns all that a ceres::Problem points to. Must be declared before, so that it outlives, the
@@ -189,7 +179,7 @@ BundleStageReport minimise_with_ceres(const BundleStage& stage, BundleState& sta
   const int free_poses = arrange_blocks(stage, model, problem, *ordering);
   ceres::Solver::Options options = solver_options(stage, free_poses);
   options.linear_solver_ordering = ordering;
-  StopCallback callback(stage);
+  StopCallback callback(stage.may_go_on);
   options.callbacks.push_back(&callback);
 
   const QuietLog quiet;
@@ -197,7 +187,7 @@ BundleStageReport minimise_with_ceres(const BundleStage& stage, BundleState& sta
   ceres::Solve(options, &problem, &summary);
 
   BundleStageReport report;
-  report.cancelled = summary.termination_type == ceres::USER_FAILURE || stage.stopped();
+  report.cancelled = callback.stopped();
   report.usable = !report.cancelled && summary.IsSolutionUsable();
   report.iterations = static_cast<int>(summary.iterations.size()) - 1;
   if (!report.usable) return report;

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "optimization/quiet_log.h"
+#include "optimization/stop_callback.h"
 
 namespace dxslam {
 namespace {
@@ -91,18 +92,6 @@ class EdgeError final : public ceres::SizedCostFunction<7, 8, 8> {
 
   Sim3 b_from_a_;
   Matrix7d root_;  ///< root^T root = information
-};
-
-class StopCallback final : public ceres::IterationCallback {
- public:
-  explicit StopCallback(const MayGoOn& may_go_on) : may_go_on_(may_go_on) {}
-  bool raised() const { return may_go_on_ && !may_go_on_(); }
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return raised() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const MayGoOn& may_go_on_;
 };
 
 void check_edges(const PoseGraph& graph) {
@@ -188,7 +177,7 @@ PoseGraphReport optimize_pose_graph(PoseGraph& graph, const PoseGraphOptions& op
   PoseGraphReport report;
   Model model(graph, options);
   StopCallback callback(may_go_on);
-  report.cancelled = callback.raised();
+  report.cancelled = callback.stops();
   if (report.cancelled) return report;
 
   ceres::Solver::Options solver = solver_options(options);
@@ -197,7 +186,7 @@ PoseGraphReport optimize_pose_graph(PoseGraph& graph, const PoseGraphOptions& op
   const QuietLog quiet;
   ceres::Solve(solver, &model.problem(), &summary);
 
-  report.cancelled = summary.termination_type == ceres::USER_FAILURE || callback.raised();
+  report.cancelled = callback.stopped();
   report.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   report.initial_cost = summary.initial_cost;
   report.final_cost = summary.final_cost;
