@@ -3,6 +3,7 @@
 #include "loop_closing/background_bundle.h"
 
 #include <algorithm>
+#include <ranges>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -65,15 +66,15 @@ class BundleMerger {
       chain.push_back(id);
       id = k.parent;
     }
-    for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
-      const Keyframe& k = map_.keyframe(*it);
+    for (const KeyframeId child : chain | std::views::reverse) {
+      const Keyframe& k = map_.keyframe(child);
       const Keyframe& parent = map_.keyframe(k.parent);
       if (unmoved(parent)) {
-        after_[*it] = k.world_from_camera;
+        after_[child] = k.world_from_camera;
         continue;
       }
       const SE3 parent_from_camera = parent.world_from_camera.inverse() * k.world_from_camera;
-      after_[*it] = after_.at(parent.id) * parent_from_camera;
+      after_[child] = after_.at(parent.id) * parent_from_camera;
       ++merge_.carried_keyframes;
     }
   }
