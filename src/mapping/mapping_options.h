@@ -23,7 +23,7 @@ struct MappingOptions {
   int bundle_fixed_keyframes = 30;
   int bundle_min_shared = 15;
   double redundant_share = 0.9;
-  double redundant_share_known = 0.75;
+  double redundant_share_known = 0.7;
   int redundant_observers = 3;
   LocalMapOptions local_map;
   BundleOptions bundle{5, 8, 3e-4};
