@@ -159,7 +159,7 @@ BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem,
   stage.held = held_poses(problem);
   stage.iterations = options.iterations;
   stage.may_go_on = may_go_on;
-  if (stage.stopped()) {
+  if (must_stop(stage.may_go_on)) {
     report.cancelled = true;
     return report;
   }

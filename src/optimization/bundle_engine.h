@@ -29,8 +29,6 @@ struct BundleStage {
   bool robust = true;        ///< Huber kernel whose width is the gate of the observation
   int iterations = 0;
   MayGoOn may_go_on;
-
-  bool stopped() const { return may_go_on && !may_go_on(); }
 };
 
 struct BundleStageReport {

@@ -187,7 +187,7 @@ BundleStageReport minimise_with_ceres(const BundleStage& stage, BundleState& sta
   ceres::Solve(options, &problem, &summary);
 
   BundleStageReport report;
-  report.cancelled = callback.stopped();
+  report.cancelled = summary.termination_type == ceres::USER_FAILURE;
   report.usable = !report.cancelled && summary.IsSolutionUsable();
   report.iterations = static_cast<int>(summary.iterations.size()) - 1;
   if (!report.usable) return report;

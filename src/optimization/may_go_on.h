@@ -10,4 +10,7 @@ namespace dxslam {
 /// ends without a result. Empty: goes on.
 using MayGoOn = std::function<bool()>;
 
+/// Asks, which may wait.
+inline bool must_stop(const MayGoOn& may_go_on) { return may_go_on && !may_go_on(); }
+
 }  // namespace dxslam

@@ -176,17 +176,17 @@ PoseGraphReport optimize_pose_graph(PoseGraph& graph, const PoseGraphOptions& op
   check_edges(graph);
   PoseGraphReport report;
   Model model(graph, options);
-  StopCallback callback(may_go_on);
-  report.cancelled = callback.stops();
+  report.cancelled = must_stop(may_go_on);
   if (report.cancelled) return report;
 
   ceres::Solver::Options solver = solver_options(options);
+  StopCallback callback(may_go_on);
   solver.callbacks.push_back(&callback);
   ceres::Solver::Summary summary;
   const QuietLog quiet;
   ceres::Solve(solver, &model.problem(), &summary);
 
-  report.cancelled = callback.stopped();
+  report.cancelled = summary.termination_type == ceres::USER_FAILURE;
   report.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   report.initial_cost = summary.initial_cost;
   report.final_cost = summary.final_cost;

@@ -126,7 +126,7 @@ class SchurSolver {
     BundleState trial = state_;
     bool fresh = true;
     while (report.iterations < stage_.iterations && damping < kMaxDamping) {
-      if (stage_.stopped()) {
+      if (must_stop(stage_.may_go_on)) {
         report.cancelled = true;
         return report;
       }

@@ -8,25 +8,17 @@
 
 namespace dxslam {
 
-/// Lets Ceres ask before every step whether it may go on. `may_go_on` must outlive it.
+/// Lets Ceres ask before every step whether it may go on; where it may not, the solver ends with
+/// ceres::USER_FAILURE. `may_go_on` must outlive this.
 class StopCallback final : public ceres::IterationCallback {
  public:
   explicit StopCallback(const MayGoOn& may_go_on) : may_go_on_(may_go_on) {}
-
-  /// Asks once, which may wait; after a "no" it does not ask again.
-  bool stops() {
-    stopped_ = stopped_ || (may_go_on_ && !may_go_on_());
-    return stopped_;
-  }
-  bool stopped() const { return stopped_; }  ///< what the answers so far were; does not wait
-
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return stops() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    return must_stop(may_go_on_) ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
   }
 
  private:
   const MayGoOn& may_go_on_;
-  bool stopped_ = false;
 };
 
 }  // namespace dxslam
