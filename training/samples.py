@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import multiprocessing as mp
+import queue as queues
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -98,9 +99,19 @@ class SampleStream:
             process.start()
 
     def batch(self, pairs: int) -> Sample:
-        """The next `pairs` samples, stacked."""
-        samples = [self.queue.get() for _ in range(pairs)]
+        """The next `pairs` samples, stacked; RuntimeError if a worker process has ended."""
+        samples = [self._next() for _ in range(pairs)]
         return {name: np.stack([s[name] for s in samples]) for name in samples[0]}
+
+    def _next(self) -> Sample:
+        while True:
+            for process in self.processes:
+                if not process.is_alive():
+                    raise RuntimeError(f"sample worker {process.name} ended with exit code {process.exitcode}")
+            try:
+                return self.queue.get(timeout=10)
+            except queues.Empty:
+                continue
 
     def close(self) -> None:
         """Ends the worker processes."""
