@@ -15,7 +15,10 @@ namespace dxslam {
 namespace {
 
 constexpr int kQuickPause = 10;
-constexpr double kLongestInterval = 0.15;  // seconds between frames for a velocity to be one
+constexpr double kGoodAgreement = 0.5;  // share of predicted matches that agree with a right pose
+constexpr double kLongestReadoutInterval =
+    0.15;                                   // seconds; a mean over more says little of one image
+constexpr double kLongestPrediction = 1.0;  // seconds ahead that a velocity is trusted
 
 int count_map_points(const std::vector<KnownPoint>& known) {
   return static_cast<int>(
@@ -66,23 +69,32 @@ TrackedFrame Tracker::track(const FramePtr& raw, std::optional<KeyframeRequest>&
   OptionalEstimate estimate = track_last_frame(*frame, grid);
   if (!estimate) return conclude(frame, estimate, request);
   // What was straightened by the last frame's velocity is now by this frame's own.
-  if (const auto velocity = velocity_at(*raw, estimate->world_from_camera)) {
-    frame = straightened(raw, velocity);
+  const FramePtr straight = straightened(raw, velocity_at(*raw, estimate->world_from_camera));
+  if (straight != raw) {
+    frame = straight;
     grid = KeypointGrid(frame->pixels);
   }
   return conclude(frame, track_local_map(*frame, grid, std::move(*estimate)), request);
 }
 
 FramePtr Tracker::straightened(const FramePtr& raw, const std::optional<Vector6d>& velocity) const {
-  return velocity ? without_rolling_shutter(raw, camera_, *velocity) : raw;
+  if (camera_.readout_time == 0.0 || !velocity) return raw;
+  if (raw->stamp - last_.frame->stamp > kLongestReadoutInterval) return raw;
+  return without_rolling_shutter(raw, camera_, *velocity);
 }
 
 std::optional<Vector6d> Tracker::velocity_at(const Frame& frame,
                                              const SE3& world_from_camera) const {
-  if (camera_.readout_time == 0.0 || !last_.frame) return std::nullopt;
+  if (!last_.frame) return std::nullopt;
   const double interval = frame.stamp - last_.frame->stamp;
-  if (!(interval > 0.0) || interval > kLongestInterval) return std::nullopt;
+  if (!(interval > 0.0)) return std::nullopt;
   return (last_.world_from_camera.inverse() * world_from_camera).log() / interval;
+}
+
+SE3 Tracker::predict(double stamp) const {
+  const double ahead = stamp - last_.frame->stamp;
+  if (!last_velocity_ || ahead > kLongestPrediction) return last_.world_from_camera;
+  return last_.world_from_camera * SE3::exp(ahead * *last_velocity_);
 }
 
 TrackedFrame Tracker::resume(const FramePtr& frame, LocalMapPtr local_map,
@@ -113,7 +125,6 @@ void Tracker::restart() {
   local_.reset();
   state_ = TrackingState::kNotStarted;
   last_ = {};
-  last_from_current_ = SE3();
   last_velocity_.reset();
   quick_pause_ = 0;
   counts_.clear();
@@ -146,8 +157,9 @@ Tracker::OptionalEstimate Tracker::start(const Frame& frame) const {
 
 Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame, const KeypointGrid& grid) {
   if (state_ == TrackingState::kTracking) {
-    const SE3 predicted = last_.world_from_camera * last_from_current_;
-    if (OptionalEstimate estimate = track_by_prediction(frame, grid, predicted)) return estimate;
+    if (OptionalEstimate estimate = track_by_prediction(frame, grid, predict(frame.stamp))) {
+      return estimate;
+    }
   }
   if (OptionalEstimate estimate = track_quickly(frame, grid)) return estimate;
   const int all = std::numeric_limits<int>::max();
@@ -212,7 +224,7 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
     // all the same, while a wrong prediction leaves matches that agree on little.
     const int agreeing = count_near(camera_, frame, estimate->world_from_camera, known,
                                     scaled(options_.agreement_radius));
-    if (agreeing >= 0.5 * matched) return estimate;
+    if (agreeing >= kGoodAgreement * matched) return estimate;
     // Between the two, a narrow search from the new pose leaves wrong matches out.
     const bool weak =
         agreeing >= options_.min_weak_agreement && agreeing >= options_.weak_agreement * matched;
@@ -410,14 +422,10 @@ TrackedFrame Tracker::report(const FramePtr& frame, const OptionalEstimate& esti
 
 void Tracker::remember(const FramePtr& frame, const OptionalEstimate& estimate) {
   if (!estimate) {
-    last_from_current_ = SE3();  // no speed is known after a gap; the last good frame is kept
-    last_velocity_.reset();
+    last_velocity_.reset();  // no speed is known after a gap; the last good frame is kept
     return;
   }
   last_velocity_ = velocity_at(*frame, estimate->world_from_camera);
-  if (last_.frame) {
-    last_from_current_ = last_.world_from_camera.inverse() * estimate->world_from_camera;
-  }
   last_ = {frame, estimate->world_from_camera, points_by_keypoint(*frame, *estimate)};
 }
 

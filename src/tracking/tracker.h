@@ -51,8 +51,10 @@ class Tracker {
   OptionalEstimate start(const Frame& frame) const;
   /// The frame without the camera's rolling shutter, as far as `velocity` is known.
   FramePtr straightened(const FramePtr& raw, const std::optional<Vector6d>& velocity) const;
-  /// Motion a second since the last frame, unless that was too long ago to tell of this moment.
+  /// Mean motion a second since the last frame with a pose.
   std::optional<Vector6d> velocity_at(const Frame& frame, const SE3& world_from_camera) const;
+  /// Where constant velocity takes the camera by `stamp`, however many frames lie between.
+  SE3 predict(double stamp) const;
   OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid);
   /// By the strongest keypoints first, then all around the pixels where these put them. Not tried
   /// for a while after it failed: the light that made it fail lasts.
@@ -89,8 +91,7 @@ class Tracker {
   LocalMapPtr local_;
   TrackingState state_ = TrackingState::kNotStarted;
   LastFrame last_;
-  SE3 last_from_current_;                  // constant velocity: the motion of the last frame
-  std::optional<Vector6d> last_velocity_;  // the same a second
+  std::optional<Vector6d> last_velocity_;  // a second, in the last camera's frame
   std::unordered_map<PointId, PointCount> counts_;
   int quick_pause_ = 0;  // frames for which track_quickly is not tried
   int frames_since_keyframe_ = 0;

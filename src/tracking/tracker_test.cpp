@@ -59,6 +59,17 @@ TEST_F(TrackerTest, FollowsASmoothPath) {
   }
 }
 
+TEST_F(TrackerTest, PredictsOverDroppedFrames) {
+  start();
+  for (const int i : {1, 2, 3, 4, 19, 20}) {
+    const SE3 truth = PointScene::pose(0.01 * i);
+    const TrackedFrame tracked = tracker_.track(scene_.frame(i, truth), request_);
+    ASSERT_EQ(tracked.state, TrackingState::kTracking) << i;
+    EXPECT_FALSE(tracked.recovered) << i;
+    EXPECT_LT(translation_distance(tracked.world_from_camera, truth), 0.01) << i;
+  }
+}
+
 TEST_F(TrackerTest, FindsItselfAfterAJumpByDescriptorsAlone) {
   start();
   const SE3 truth = PointScene::pose(0.25);
