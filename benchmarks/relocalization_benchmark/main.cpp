@@ -18,6 +18,7 @@
 #include "io/image_file.h"
 #include "io/sequence_reader.h"
 #include "large_map.h"
+#include "other_truth.h"
 #include "start.h"
 #include "synthetic_factors.h"
 #include "trial.h"
@@ -34,6 +35,7 @@ struct Settings {
   std::string csv;
   std::string cache;
   std::string start_map;
+  std::string redkitchen_truth;
   std::vector<std::string> parts = {"redkitchen", "hololens", "time", "synthetic"};
   std::vector<std::string> scenes = {"room", "office"};
   double synthetic_fps = 5.0;
@@ -47,6 +49,7 @@ struct Settings {
 struct Split {
   std::string name;
   std::string folder;
+  std::string truth;  // file of the true poses; those of the recording if empty
   MapUnderTest::Picker in_map;
   MapUnderTest::Picker is_query;
   double right_distance = 0.05;
@@ -57,9 +60,10 @@ int seven_scenes_number(const RgbdSequence& sequence, std::size_t i) {
   return static_cast<int>(std::lround(sequence.stamp(i) * 30.0));
 }
 
-Split redkitchen() {
+Split redkitchen(const Settings& settings) {
   return {"redkitchen",
           "7scenes_redkitchen",
+          settings.redkitchen_truth,
           [](std::size_t i, const RgbdSequence& s) { return seven_scenes_number(s, i) <= 598; },
           [](std::size_t i, const RgbdSequence& s) { return seven_scenes_number(s, i) >= 600; },
           0.05,
@@ -69,6 +73,7 @@ Split redkitchen() {
 Split hololens() {
   return {"hololens",
           "hololens",
+          "",
           [](std::size_t i, const RgbdSequence&) { return i % 5 != 4; },
           [](std::size_t i, const RgbdSequence&) { return i % 5 == 4; },
           0.10,
@@ -79,6 +84,11 @@ std::unique_ptr<FeatureExtractor> make_features(const Settings& settings) {
   auto extractor = make_extractor(settings.features);
   if (settings.cache.empty()) return extractor;
   return std::make_unique<CachedExtractor>(std::move(extractor), settings.cache);
+}
+
+std::unique_ptr<RgbdSequence> open_recording(const Settings& settings, const Split& split) {
+  auto sequence = open_sequence(settings.shared + "/data/" + split.folder);
+  return split.truth.empty() ? std::move(sequence) : with_truth(std::move(sequence), split.truth);
 }
 
 // Whether a frame of the map was taken nearby, in nearly the same direction.
@@ -154,7 +164,7 @@ void print_map(const Split& split, const MapUnderTest& map) {
 }
 
 void measure_split(const Settings& settings, const Split& split) {
-  const auto sequence = open_sequence(settings.shared + "/data/" + split.folder);
+  const auto sequence = open_recording(settings, split);
   MapUnderTest map(*sequence, make_features(settings), split.in_map, split.right_distance);
   print_map(split, map);
   const Relocalizer relocalizer(map.camera(), map.extractor().traits(), settings.options);
@@ -172,8 +182,8 @@ void measure_split(const Settings& settings, const Split& split) {
 
 // A large map: the redkitchen map and enough altered copies of it for 1000 keyframes.
 void measure_time(const Settings& settings) {
-  const Split split = redkitchen();
-  const auto sequence = open_sequence(settings.shared + "/data/" + split.folder);
+  const Split split = redkitchen(settings);
+  const auto sequence = open_recording(settings, split);
   MapUnderTest map(*sequence, make_features(settings), split.in_map, split.right_distance);
   const Map large = enlarge_map(map.map(), 1000);
   const GlobalIndex index = index_keyframes(large);
@@ -190,7 +200,7 @@ void measure_time(const Settings& settings) {
 void measure_program_start(const Settings& settings) {
   constexpr int kRuns = 9;
   const Split split = hololens();
-  const auto sequence = open_sequence(settings.shared + "/data/" + split.folder);
+  const auto sequence = open_recording(settings, split);
   MapUnderTest map(*sequence, make_features(settings), split.in_map, split.right_distance);
   const std::optional<RgbdImage> image = sequence->read(4);
   const fs::path file = settings.start_map.empty()
@@ -220,7 +230,7 @@ int run(const Settings& settings) {
       settings.parts != std::vector<std::string>{"start"})
     print_heading();
   for (const std::string& part : settings.parts) {
-    if (part == "redkitchen") measure_split(settings, redkitchen());
+    if (part == "redkitchen") measure_split(settings, redkitchen(settings));
     if (part == "hololens") measure_split(settings, hololens());
     if (part == "time") measure_time(settings);
     if (part == "start") measure_program_start(settings);
@@ -243,6 +253,8 @@ int main(int argc, char** argv) {
   app.add_option("--parts", settings.parts, "redkitchen, hololens, time, start, synthetic")
       ->delimiter(',');
   app.add_option("--start-map", settings.start_map, "Keep the large map of the part start here");
+  app.add_option("--redkitchen-truth", settings.redkitchen_truth,
+                 "Trajectory in TUM format to judge redkitchen by, instead of the recording's own");
   app.add_option("--every-foreign", settings.every_foreign,
                  "Ask for every n-th frame of recordings of other places")
       ->check(CLI::PositiveNumber)

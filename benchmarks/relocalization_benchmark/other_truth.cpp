@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "other_truth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+#include "io/sequence_reader.h"
+
+namespace dxslam::benchmark {
+namespace {
+
+constexpr double kSameStamp = 1e-3;  // seconds
+
+class OtherTruth : public RgbdSequence {
+ public:
+  OtherTruth(std::unique_ptr<RgbdSequence> sequence, Trajectory truth)
+      : sequence_(std::move(sequence)), truth_(std::move(truth)) {}
+  const std::string& name() const override { return sequence_->name(); }
+  const Camera& camera() const override { return sequence_->camera(); }
+  std::size_t size() const override { return sequence_->size(); }
+  double stamp(std::size_t index) const override { return sequence_->stamp(index); }
+  std::optional<RgbdImage> read(std::size_t index) override { return sequence_->read(index); }
+  const std::vector<SkippedFrame>& skipped() const override { return sequence_->skipped(); }
+  const Trajectory& ground_truth() const override { return truth_; }
+
+ private:
+  std::unique_ptr<RgbdSequence> sequence_;
+  Trajectory truth_;
+};
+
+}  // namespace
+
+std::unique_ptr<RgbdSequence> with_truth(std::unique_ptr<RgbdSequence> sequence,
+                                         const std::string& file) {
+  const Trajectory all = load_ground_truth(file);
+  Trajectory truth;
+  for (std::size_t i = 0; i < sequence->size(); ++i) {
+    const double stamp = sequence->stamp(i);
+    const auto it =
+        std::lower_bound(all.begin(), all.end(), stamp - kSameStamp,
+                         [](const StampedPose& pose, double value) { return pose.stamp < value; });
+    if (it == all.end() || it->stamp > stamp + kSameStamp) {
+      throw InputError(fmt::format("{}: no pose at {:.3f} s, expected one for every frame of {}",
+                                   file, stamp, sequence->name()));
+    }
+    truth.push_back(*it);
+  }
+  return std::make_unique<OtherTruth>(std::move(sequence), std::move(truth));
+}
+
+}  // namespace dxslam::benchmark
