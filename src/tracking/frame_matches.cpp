@@ -64,4 +64,12 @@ int count_near(const Camera& camera, const Frame& frame, const SE3& world_from_c
   }));
 }
 
+int count_in_view(const Camera& camera, const SE3& world_from_camera,
+                  const std::vector<KnownPoint>& known) {
+  const SE3 camera_from_world = world_from_camera.inverse();
+  return static_cast<int>(std::count_if(known.begin(), known.end(), [&](const KnownPoint& k) {
+    return camera.project_into_view(camera_from_world * k.position).has_value();
+  }));
+}
+
 }  // namespace dxslam

@@ -44,6 +44,10 @@ int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi
 int count_near(const Camera& camera, const Frame& frame, const SE3& world_from_camera,
                const std::vector<KnownPoint>& known, double radius);
 
+/// How many of the points `world_from_camera` puts into view.
+int count_in_view(const Camera& camera, const SE3& world_from_camera,
+                  const std::vector<KnownPoint>& known);
+
 /// Disparity of a keypoint for the optimisers; 0 where it has no depth.
 inline double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera) {
   return frame.has_depth(keypoint) ? camera.bf() / static_cast<double>(frame.depths[keypoint])

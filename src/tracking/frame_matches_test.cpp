@@ -30,6 +30,9 @@ TEST(FrameMatches, CountsThePointsNearTheirKeypoints) {
   EXPECT_EQ(count_near(camera, *frame, SE3(), known, 3.0), 2);
   EXPECT_EQ(count_near(camera, *frame, SE3(), known, 4.0), 3);
   EXPECT_EQ(count_near(camera, *frame, SE3(), {}, 4.0), 0);
+  EXPECT_EQ(count_in_view(camera, SE3(), known), 3);
+  known[0].position.x() = 100.0;  // beside the image
+  EXPECT_EQ(count_in_view(camera, SE3(), known), 2);
 }
 
 }  // namespace

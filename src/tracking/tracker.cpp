@@ -15,7 +15,6 @@ namespace dxslam {
 namespace {
 
 constexpr int kQuickPause = 10;
-constexpr double kGoodAgreement = 0.5;  // share of predicted matches that agree with a right pose
 constexpr double kLongestReadoutInterval =
     0.15;                                   // seconds; a mean over more says little of one image
 constexpr double kLongestPrediction = 1.0;  // seconds ahead that a velocity is trusted
@@ -157,7 +156,8 @@ Tracker::OptionalEstimate Tracker::start(const Frame& frame) const {
 
 Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame, const KeypointGrid& grid) {
   if (state_ == TrackingState::kTracking) {
-    if (OptionalEstimate estimate = track_by_prediction(frame, grid, predict(frame.stamp))) {
+    if (OptionalEstimate estimate =
+            track_by_prediction(frame, grid, predict(frame.stamp), options_.fair_agreement)) {
       return estimate;
     }
   }
@@ -177,7 +177,8 @@ Tracker::OptionalEstimate Tracker::track_quickly(const Frame& frame, const Keypo
   }
   const OptionalEstimate quick = track_by_descriptors(frame, last_, options_.quick_keypoints);
   if (quick && static_cast<int>(quick->known.size()) >= options_.min_quick_inliers) {
-    if (OptionalEstimate estimate = track_by_prediction(frame, grid, quick->world_from_camera)) {
+    if (OptionalEstimate estimate =
+            track_by_prediction(frame, grid, quick->world_from_camera, options_.weak_agreement)) {
       estimate->recovered = true;
       return estimate;
     }
@@ -211,25 +212,28 @@ std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const Keypo
 }
 
 Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,
-                                                       SE3 predicted) const {
+                                                       SE3 predicted, double fair) const {
   const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
-  for (const double radius : {options_.search_radius, options_.narrow_radius}) {
-    const std::vector<KnownPoint> known =
-        match_predicted(frame, grid, last_known, predicted, radius);
+  struct Search {
+    double radius;
+    double enough;  // share that ends the search
+  };
+  for (const Search search : {Search{options_.search_radius, options_.good_agreement},
+                              Search{options_.narrow_radius, fair}}) {
+    std::vector<KnownPoint> known =
+        match_predicted(frame, grid, last_known, predicted, search.radius);
     if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
-    const double matched = static_cast<double>(known.size());
-    OptionalEstimate estimate = optimise(frame, predicted, known);
+    const OptionalEstimate estimate = optimise(frame, predicted, known);
     if (!estimate) return std::nullopt;
-    // In the dark correct matches scatter by more than the gate of the pose: most of them are near
-    // all the same, while a wrong prediction leaves matches that agree on little.
-    const int agreeing = count_near(camera_, frame, estimate->world_from_camera, known,
-                                    scaled(options_.agreement_radius));
-    if (agreeing >= kGoodAgreement * matched) return estimate;
-    // Between the two, a narrow search from the new pose leaves wrong matches out.
-    const bool weak =
-        agreeing >= options_.min_weak_agreement && agreeing >= options_.weak_agreement * matched;
-    if (!weak) return std::nullopt;
-    predicted = estimate->world_from_camera;
+    // The gate of the pose would not do: in the dark correct matches scatter by more. Nor would a
+    // share of the matches: beside a pose that is wrong, those found fit each other all the same,
+    // but most points find none.
+    const SE3& pose = estimate->world_from_camera;
+    const int agreeing = count_near(camera_, frame, pose, known, scaled(options_.agreement_radius));
+    const int in_view = count_in_view(camera_, pose, last_known);
+    if (agreeing >= search.enough * in_view) return estimate;
+    if (agreeing < options_.weak_agreement * in_view) return std::nullopt;
+    predicted = pose;  // a narrow search from here leaves wrong matches out and finds right ones
   }
   return std::nullopt;
 }

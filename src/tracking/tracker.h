@@ -59,9 +59,10 @@ class Tracker {
   /// By the strongest keypoints first, then all around the pixels where these put them. Not tried
   /// for a while after it failed: the light that made it fail lasts.
   OptionalEstimate track_quickly(const Frame& frame, const KeypointGrid& grid);
-  /// Matches the last frame's points around the pixels at which a pose puts them.
-  OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid,
-                                       SE3 predicted) const;
+  /// Matches the last frame's points around the pixels at which a pose puts them. `fair`: the share
+  /// of those in view that must agree after the second search.
+  OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid, SE3 predicted,
+                                       double fair) const;
   std::vector<KnownPoint> match_predicted(const Frame& frame, const KeypointGrid& grid,
                                           const std::vector<KnownPoint>& last_known,
                                           const SE3& predicted, double radius) const;

@@ -38,8 +38,9 @@ struct TrackerOptions {
   double ratio = 0.9;
   int min_predicted_matches = 80;
   double agreement_radius = 3.0;
-  double weak_agreement = 0.35;
-  int min_weak_agreement = 200;
+  double good_agreement = 0.4;
+  double fair_agreement = 0.3;
+  double weak_agreement = 0.2;
   int quick_keypoints = 500;
   int min_quick_inliers = 60;
   double max_view_angle = 70.0;
@@ -66,10 +67,12 @@ struct TrackerOptions {
           "with fewer the whole frame is matched by descriptors alone");
     visit("agreement_radius", self.agreement_radius, {0.1, 100}, "pixels at 640 wide",
           "predicted matches so near to where the pose found puts their points agree with it");
+    visit("good_agreement", self.good_agreement, {0, 1}, "",
+          "share of the last frame's points in view that must agree for a prediction to be right");
+    visit("fair_agreement", self.fair_agreement, {0, 1}, "",
+          "the same after a narrow search from the pose found");
     visit("weak_agreement", self.weak_agreement, {0, 1}, "",
-          "share of predicted matches that agree below which the prediction was wrong");
-    visit("min_weak_agreement", self.min_weak_agreement, {6, 100000}, "matches",
-          "that must agree where fewer than half do");
+          "the same if descriptors found the pose first; with fewer there is no narrow search");
     visit("quick_keypoints", self.quick_keypoints, {10, 100000}, "keypoints",
           "the strongest of both frames, which are tried before all of them");
     visit("min_quick_inliers", self.min_quick_inliers, {6, 100000}, "points",
