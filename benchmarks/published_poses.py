@@ -25,8 +25,12 @@ def rotate(quaternion, vector):
 
 def write_trajectory(published, sequence, out):
     """Writes the poses of one sequence as a trajectory in TUM format, world from camera."""
+    try:
+        text = Path(published).read_text()
+    except (OSError, UnicodeDecodeError) as error:
+        sys.exit(f"{published}: {error}, expected the published poses of redkitchen")
     lines = {}
-    for number, line in enumerate(Path(published).read_text().splitlines(), 1):
+    for number, line in enumerate(text.splitlines(), 1):
         match = LINE.match(line)
         if not match:
             sys.exit(f"{published}:{number}: expected seq-NN/frame-NNNNNN.color.png qw qx qy qz tx ty tz f")
