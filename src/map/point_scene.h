@@ -54,7 +54,7 @@ class PointScene {
       const Eigen::Vector2d pixel =
           camera_.project(p) + noise * Eigen::Vector2d(normal(generator_), normal(generator_));
       if (!camera_.contains(pixel)) continue;
-      frame->pixels.push_back(pixel.cast<float>());
+      frame->pixels.emplace_back(pixel.cast<float>());
       frame->depths.push_back(uniform(generator_) < depth_share ? static_cast<float>(p.z()) : 0.0F);
       frame->scores.push_back(1.0F);
       frame->sigmas.push_back(1.0F);

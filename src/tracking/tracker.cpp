@@ -73,7 +73,7 @@ TrackedFrame Tracker::track(const FramePtr& raw, std::optional<KeyframeRequest>&
     frame = straight;
     grid = KeypointGrid(frame->pixels);
   }
-  return conclude(frame, track_local_map(*frame, grid, std::move(*estimate)), request);
+  return conclude(frame, track_local_map(*frame, grid, *estimate), request);
 }
 
 FramePtr Tracker::straightened(const FramePtr& raw, const std::optional<Vector6d>& velocity) const {
@@ -113,8 +113,7 @@ TrackedFrame Tracker::resume(const FramePtr& frame, LocalMapPtr local_map,
         {static_cast<int>(i), points[i], local_->positions[static_cast<std::size_t>(index)]});
   }
   request.reset();
-  const OptionalEstimate estimate =
-      track_local_map(*frame, KeypointGrid(frame->pixels), std::move(found));
+  const OptionalEstimate estimate = track_local_map(*frame, KeypointGrid(frame->pixels), found);
   TrackedFrame result = conclude(frame, estimate, request);
   if (!estimate) *this = before;  // what was known before may still help
   return result;
@@ -220,10 +219,10 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
   };
   for (const Search search : {Search{options_.search_radius, options_.good_agreement},
                               Search{options_.narrow_radius, fair}}) {
-    std::vector<KnownPoint> known =
+    const std::vector<KnownPoint> known =
         match_predicted(frame, grid, last_known, predicted, search.radius);
     if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
-    const OptionalEstimate estimate = optimise(frame, predicted, known);
+    OptionalEstimate estimate = optimise(frame, predicted, known);
     if (!estimate) return std::nullopt;
     // The gate of the pose would not do: in the dark correct matches scatter by more. Nor would a
     // share of the matches: beside a pose that is wrong, those found fit each other all the same,
@@ -279,7 +278,7 @@ Tracker::OptionalEstimate Tracker::estimate_by_pnp(const Frame& frame,
   for (const KnownPoint& k : known) {
     const std::size_t i = static_cast<std::size_t>(k.keypoint);
     points.push_back(k.position);
-    pixels.push_back(frame.pixels[i].cast<double>());
+    pixels.emplace_back(frame.pixels[i].cast<double>());
     depths.push_back(frame.depths[i]);
   }
   const std::optional<PnpReport> pnp = solve_pnp(camera_, points, pixels, depths, options_.pnp);
@@ -331,7 +330,7 @@ std::vector<PixelPrediction> Tracker::predict_local_points(const SE3& world_from
 }
 
 Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const KeypointGrid& grid,
-                                                   Estimate estimate) {
+                                                   const Estimate& estimate) {
   std::vector<char> taken(frame.size(), 0);
   std::vector<char> matched(local_->size(), 0);
   std::vector<KnownPoint> known;

@@ -71,7 +71,8 @@ class Tracker {
                                         int keypoints) const;
   OptionalEstimate track_whole_local_map(const Frame& frame) const;
   OptionalEstimate estimate_by_pnp(const Frame& frame, std::vector<KnownPoint> known) const;
-  OptionalEstimate track_local_map(const Frame& frame, const KeypointGrid& grid, Estimate estimate);
+  OptionalEstimate track_local_map(const Frame& frame, const KeypointGrid& grid,
+                                   const Estimate& estimate);
   std::vector<PixelPrediction> predict_local_points(const SE3& world_from_camera,
                                                     const std::vector<char>& known) const;
   OptionalEstimate optimise(const Frame& frame, const SE3& start,

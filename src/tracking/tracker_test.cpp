@@ -162,7 +162,7 @@ TEST(Tracker, UndoesTheRollingShutter) {
 }
 
 TEST(TrackerOptions, NameTheFieldThatIsOutOfRange) {
-  PointScene scene(10);
+  const PointScene scene(10);
   TrackerOptions options;
   options.keyframe.min_gap = 0;
   try {
