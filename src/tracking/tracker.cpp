@@ -15,8 +15,8 @@ namespace dxslam {
 namespace {
 
 constexpr int kQuickPause = 10;
-constexpr double kLongestReadoutInterval =
-    0.15;                                   // seconds; a mean over more says little of one image
+// Seconds: a mean velocity over more tells little of the moment of one image.
+constexpr double kLongestReadoutInterval = 0.15;
 constexpr double kLongestPrediction = 1.0;  // seconds ahead that a velocity is trusted
 
 int count_map_points(const std::vector<KnownPoint>& known) {
