@@ -9,6 +9,7 @@ import re
 import sys
 from pathlib import Path
 
+REDKITCHEN = "seq-01"  # the sequence of redkitchen that 7scenes_redkitchen is
 FPS = 30.0  # stamps of 7-Scenes are frame numbers over this
 LINE = re.compile(r"(seq-\d+)/frame-(\d+)\.color\.png((?: \S+){7,8})$")
 

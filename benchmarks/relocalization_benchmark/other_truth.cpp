@@ -4,10 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
+#include "evaluation/association.h"
 #include "io/sequence_reader.h"
 
 namespace dxslam::benchmark {
@@ -36,19 +37,15 @@ class OtherTruth : public RgbdSequence {
 
 std::unique_ptr<RgbdSequence> with_truth(std::unique_ptr<RgbdSequence> sequence,
                                          const std::string& file) {
-  const Trajectory all = load_ground_truth(file);
-  Trajectory truth;
-  for (std::size_t i = 0; i < sequence->size(); ++i) {
-    const double stamp = sequence->stamp(i);
-    const auto it =
-        std::lower_bound(all.begin(), all.end(), stamp - kSameStamp,
-                         [](const StampedPose& pose, double value) { return pose.stamp < value; });
-    if (it == all.end() || it->stamp > stamp + kSameStamp) {
-      throw InputError(fmt::format("{}: no pose at {:.3f} s, expected one for every frame of {}",
-                                   file, stamp, sequence->name()));
-    }
-    truth.push_back(*it);
+  const std::vector<PosePair> pairs =
+      associate(load_ground_truth(file), sequence->ground_truth(), kSameStamp);
+  if (pairs.size() != sequence->size()) {
+    throw InputError(
+        fmt::format("{}: poses at the stamps of {} frames, expected them at all {} of {}", file,
+                    pairs.size(), sequence->size(), sequence->name()));
   }
+  Trajectory truth;
+  for (const PosePair& pair : pairs) truth.push_back(pair.truth);
   return std::make_unique<OtherTruth>(std::move(sequence), std::move(truth));
 }
 
