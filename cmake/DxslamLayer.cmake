@@ -15,11 +15,13 @@ function(dxslam_share_headers TARGET)
   endif()
 endfunction()
 
-# dxslam_layer(NAME DEPENDS targets...): one library from src/NAME/*.cpp and, from *_test.cpp beside
-# the sources, one test program NAME_test. Headers are included as "NAME/header.h".
+# dxslam_layer(NAME DEPENDS targets...): one library from the sources in src/NAME and its folders
+# and, from *_test.cpp beside them, one test program NAME_test. Headers are included as
+# "NAME/folder/header.h".
 function(dxslam_layer NAME)
   cmake_parse_arguments(ARG "" "" "DEPENDS;TEST_DEPENDS" ${ARGN})
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp
+       ${CMAKE_CURRENT_SOURCE_DIR}/*/*.cpp)
   set(TESTS ${SOURCES})
   list(FILTER SOURCES EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER TESTS INCLUDE REGEX "_test\\.cpp$")

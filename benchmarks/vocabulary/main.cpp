@@ -18,7 +18,7 @@
 #include <random>
 
 #include "growth_plot.h"
-#include "io/atomic_file.h"
+#include "io/primitives/atomic_file.h"
 #include "vocabulary/bow_database.h"
 #include "vocabulary/vocabulary.h"
 #include "vocabulary/vocabulary_tree.h"

@@ -10,7 +10,7 @@
 
 #include "features/extractor.h"
 #include "features/extractor_options.h"
-#include "io/low_light.h"
+#include "synthetic/low_light.h"
 
 namespace dxslam::apps {
 

@@ -13,9 +13,9 @@
 #include <regex>
 
 #include "core/error.h"
-#include "io/image_file.h"
-#include "io/low_light.h"
-#include "io/sequence_reader.h"
+#include "io/primitives/image_file.h"
+#include "io/recordings/sequence_reader.h"
+#include "synthetic/low_light.h"
 
 namespace dxslam::apps {
 namespace {

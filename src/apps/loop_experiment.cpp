@@ -13,9 +13,9 @@
 #include "core/error.h"
 #include "features/data_directory.h"
 #include "features/extractor_factory.h"
-#include "io/low_light.h"
 #include "place/two_view_check.h"
 #include "slam/stage_times.h"
+#include "synthetic/low_light.h"
 #include "vocabulary/vocabulary.h"
 
 namespace dxslam::apps {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/sequence.h"
+#include "evaluation/loop_truth.h"
 #include "evaluation/loop_truth_from_poses.h"
 #include "features/extractor_options.h"
-#include "io/loop_truth.h"
 #include "place/loop_detector.h"
 
 namespace dxslam::apps {

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "evaluation/statistics.h"
-#include "io/atomic_file.h"
+#include "io/primitives/atomic_file.h"
 
 namespace dxslam::apps {
 namespace {

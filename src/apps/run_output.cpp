@@ -14,10 +14,10 @@
 #include "core/options.h"
 #include "evaluation/ate.h"
 #include "evaluation/trajectory_svg.h"
-#include "io/atomic_file.h"
-#include "io/options_yaml.h"
-#include "io/ply_file.h"
-#include "io/trajectory_file.h"
+#include "io/formats/options_yaml.h"
+#include "io/formats/ply_file.h"
+#include "io/formats/trajectory_file.h"
+#include "io/primitives/atomic_file.h"
 
 namespace dxslam::apps {
 namespace {

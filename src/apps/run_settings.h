@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "io/sequence_reader.h"
+#include "io/recordings/sequence_reader.h"
 #include "slam/system_options.h"
 
 namespace dxslam::apps {

@@ -4,7 +4,7 @@
 
 #include "core/options.h"
 #include "features/extractor_factory.h"
-#include "io/options_yaml.h"
+#include "io/formats/options_yaml.h"
 
 namespace dxslam::apps {
 

@@ -14,7 +14,7 @@
 
 #include "evaluation/ate.h"
 #include "evaluation/rpe.h"
-#include "io/trajectory_file.h"
+#include "io/formats/trajectory_file.h"
 
 namespace dxslam {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/loop_truth.h"
+#include "evaluation/loop_truth.h"
 
 namespace dxslam {
 

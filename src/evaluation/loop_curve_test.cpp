@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "evaluation/loop_truth_from_poses.h"
-#include "io/mat_file.h"
-#include "io/test_folder.h"
+#include "evaluation/mat_file.h"
+#include "io/primitives/test_folder.h"
 
 namespace dxslam {
 namespace {

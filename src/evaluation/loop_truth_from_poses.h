@@ -7,8 +7,8 @@
 
 #include "core/options.h"
 #include "core/trajectory.h"
+#include "evaluation/loop_truth.h"
 #include "evaluation/view_overlap.h"
-#include "io/loop_truth.h"
 
 namespace dxslam {
 

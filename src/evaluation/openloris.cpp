@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "evaluation/association.h"
-#include "io/openloris_sensors.h"
+#include "io/recordings/openloris_sensors.h"
 
 namespace dxslam {
 namespace {

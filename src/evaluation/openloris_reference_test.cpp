@@ -12,7 +12,7 @@
 
 #include "evaluation/openloris.h"
 #include "evaluation/openloris_svg.h"
-#include "io/openloris_sensors.h"
+#include "io/recordings/openloris_sensors.h"
 
 namespace dxslam {
 namespace {

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "io/text_file.h"
+#include "io/primitives/atomic_file.h"
+#include "io/primitives/text_file.h"
 
 namespace dxslam {
 namespace {

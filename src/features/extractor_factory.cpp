@@ -9,11 +9,11 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "features/brief_extractor.h"
 #include "features/data_directory.h"
-#include "features/model_manifest.h"
-#include "features/network_extractor.h"
-#include "features/orb_extractor.h"
+#include "features/hand_crafted/brief_extractor.h"
+#include "features/hand_crafted/orb_extractor.h"
+#include "features/network/model_manifest.h"
+#include "features/network/network_extractor.h"
 
 namespace dxslam {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 #include "features/data_directory.h"
-#include "features/test_models.h"
+#include "features/network/test_models.h"
 #include "matching/descriptor_matching.h"
 
 namespace dxslam {

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "io/ply_file.h"
+#include "io/formats/ply_file.h"
+#include "io/primitives/atomic_file.h"
 
 namespace dxslam {
 namespace {

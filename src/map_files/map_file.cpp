@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "io/text_file.h"
+#include "io/primitives/atomic_file.h"
+#include "io/primitives/text_file.h"
 #include "map_files/file_bytes.h"
 #include "map_files/map_sections.h"
 

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <random>
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 #include "map_files/crc32c.h"
 #include "map_files/map_merge.h"
 #include "map_files/map_statistics.h"

@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 #include "map_files/test_map_files.h"
 
 namespace dxslam {

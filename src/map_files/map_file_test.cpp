@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 #include "map_files/crc32c.h"
 #include "map_files/map_sections.h"
 #include "map_files/test_map_files.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 #include "map_files/map_export.h"
 #include "map_files/map_merge.h"
 #include "map_files/map_statistics.h"

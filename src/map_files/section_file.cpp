@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "io/text_file.h"
+#include "io/primitives/text_file.h"
 #include "map_files/crc32c.h"
 
 namespace dxslam {

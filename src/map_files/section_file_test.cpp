@@ -2,7 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "map_files/section_file.h"
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 
 namespace dxslam {
 namespace {

@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "io/low_light.h"
-#include "io/text_file.h"
+#include "io/primitives/text_file.h"
+#include "synthetic/low_light.h"
 #include "synthetic/random.h"
 
 namespace dxslam {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/sequence.h"
-#include "io/low_light.h"
 #include "synthetic/camera_path.h"
 #include "synthetic/layout.h"
+#include "synthetic/low_light.h"
 #include "synthetic/people.h"
 #include "synthetic/renderer.h"
 #include "synthetic/synthetic_options.h"

@@ -12,9 +12,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "io/calibration.h"
-#include "io/trajectory_file.h"
+#include "io/calibration/calibration.h"
+#include "io/formats/trajectory_file.h"
+#include "io/primitives/atomic_file.h"
 #include "synthetic/parallel.h"
 
 namespace dxslam {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "io/sequence_reader.h"
+#include "io/recordings/sequence_reader.h"
 #include "synthetic/test_worlds.h"
 
 namespace dxslam {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/text_file.h"
+#include "io/primitives/text_file.h"
 
 namespace dxslam {
 namespace {

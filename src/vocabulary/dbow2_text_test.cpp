@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 #include "vocabulary/test_vocabularies.h"
 #include "vocabulary/vocabulary.h"
 

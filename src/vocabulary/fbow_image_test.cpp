@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 #include "vocabulary/mapped_file.h"
 #include "vocabulary/test_vocabularies.h"
 #include "vocabulary/vocabulary.h"

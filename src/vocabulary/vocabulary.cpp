@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
+#include "io/primitives/atomic_file.h"
 #include "vocabulary/dbow2_text.h"
 #include "vocabulary/fbow_image.h"
 #include "vocabulary/mapped_file.h"

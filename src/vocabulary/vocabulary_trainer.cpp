@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/options.h"
-#include "io/atomic_file.h"
+#include "io/primitives/atomic_file.h"
 #include "matching/descriptor_matching.h"
 #include "vocabulary/training_checkpoint.h"
 #include "vocabulary/vocabulary_tree.h"

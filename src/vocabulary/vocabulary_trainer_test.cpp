@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "io/test_folder.h"
+#include "io/primitives/test_folder.h"
 #include "vocabulary/descriptor_clustering.h"
 #include "vocabulary/test_vocabularies.h"
 

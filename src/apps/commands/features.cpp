@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "apps/commands.h"
+#include "apps/features_arguments.h"
+#include "core/error.h"
+#include "features/extractor_factory.h"
+#include "io/formats/npz_writer.h"
+#include "io/primitives/atomic_file.h"
+#include "io/primitives/image_file.h"
+
+namespace dxslam::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExtractArguments {
+  FeatureArguments extractor;
+  std::vector<std::string> images;
+  std::string npz;
+  double low_light = 0.0;
+};
+
+std::string archive_name(const std::string& image) {
+  return fs::path(image).stem().string() + ".npz";
+}
+
+void check_distinct(const std::vector<std::string>& images) {
+  std::set<std::string> names;
+  for (const std::string& image : images) {
+    if (names.insert(archive_name(image)).second) continue;
+    throw InputError(fmt::format("{}: two images would be written to {}, expected distinct names",
+                                 image, archive_name(image)));
+  }
+}
+
+void write_features(const Features& features, const std::string& path) {
+  std::vector<float> positions;
+  std::vector<float> scores;
+  for (const Keypoint& keypoint : features.keypoints) {
+    positions.push_back(keypoint.x);
+    positions.push_back(keypoint.y);
+    scores.push_back(keypoint.score);
+  }
+  NpzWriter writer;
+  writer.add("keypoints", {features.size(), 2}, positions);
+  writer.add("scores", {features.size()}, scores);
+  writer.add("descriptors", features.descriptors);
+  writer.add("global", {features.global.size()}, features.global);
+  writer.write(path);
+}
+
+void extract(const ExtractArguments& arguments) {
+  check_distinct(arguments.images);
+  const auto extractor = make_extractor(arguments.extractor);
+  if (!arguments.npz.empty()) make_folder(arguments.npz);
+  for (const std::string& path : arguments.images) {
+    const cv::Mat image = read_image(path, arguments.low_light);
+    const Features features = extractor->extract(image, true);
+    double total = 0.0;
+    for (const StageTime& stage : extractor->last_stages()) total += stage.ms;
+    fmt::print("{}: {} keypoints, descriptors of {} {}, global descriptor of {}, {:.1f} ms\n", path,
+               features.size(), features.descriptors.cols,
+               extractor->traits().binary ? "bytes" : "floats", features.global.size(), total);
+    if (!arguments.npz.empty()) {
+      write_features(features, (fs::path(arguments.npz) / archive_name(path)).string());
+    }
+  }
+}
+
+}  // namespace
+
+void add_feature_options(CLI::App& command, FeatureArguments& arguments) {
+  command.add_option(
+      "--features", arguments.features,
+      "name of an extractor, or a model manifest (default: hfnet, or orb without it)");
+  command.add_option("--max-keypoints", arguments.options.max_keypoints, "most keypoints an image");
+  command.add_option("--spread", arguments.options.spread,
+                     "share of the keypoints given out evenly over the image (0 to 1)");
+  command.add_option("--threads", arguments.options.threads, "threads of the network")
+      ->capture_default_str();
+  command.add_option("--precision", arguments.options.precision, "auto, f32, bf16 or int8")
+      ->capture_default_str();
+  command.add_flag("--deterministic", arguments.options.deterministic,
+                   "f32 arithmetic: the same bits in every run");
+}
+
+void add_low_light_option(CLI::App& command, double& gain) {
+  command.add_option("--low-light", gain, "darken the images first (low-light model)")
+      ->expected(0, 1)
+      ->default_str(fmt::format("{}", LowLight::kDefaultGain))
+      ->type_name("[=GAIN]");
+}
+
+std::unique_ptr<FeatureExtractor> make_extractor(const FeatureArguments& arguments) {
+  return dxslam::make_extractor(
+      arguments.features.empty() ? default_extractor() : arguments.features, arguments.options);
+}
+
+cv::Mat read_image(const std::string& path, double gain) {
+  const cv::Mat image = read_color_image(path);
+  return gain > 0.0 ? LowLight(gain).apply(image, 0) : image;
+}
+
+void add_extract_command(CLI::App& app) {
+  auto arguments = std::make_shared<ExtractArguments>();
+  CLI::App* command = app.add_subcommand("features", "extract features of images");
+  command->add_option("images", arguments->images, "PNG or JPEG files")->required();
+  command->add_option("--npz", arguments->npz,
+                      "folder for one NumPy archive an image: keypoints N x 2 (pixels), scores N, "
+                      "descriptors N x D, global G");
+  add_feature_options(*command, arguments->extractor);
+  add_low_light_option(*command, arguments->low_light);
+  command->callback([arguments] { extract(*arguments); });
+}
+
+void add_features_command(CLI::App& app) {
+  add_extract_command(app);
+  add_match_command(app);
+  add_bench_command(app);
+}
+
+}  // namespace dxslam::apps

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "apps/commands.h"
+#include "apps/loop_experiment.h"
+#include "apps/loops_output.h"
+#include "apps/progress.h"
+#include "core/error.h"
+#include "core/options.h"
+#include "evaluation/statistics.h"
+#include "io/formats/options_yaml.h"
+#include "io/recordings/sequence_reader.h"
+#include "synthetic/low_light.h"
+
+namespace dxslam::apps {
+namespace {
+
+struct LoopsArguments {
+  LoopSettings settings;
+  std::string config;
+};
+
+void print_table(const LoopExperiment& experiment, const std::vector<NamedCurve>& curves) {
+  fmt::print("{} queries, {} of them with a true loop; {} places\n", experiment.queries.size(),
+             curves.front().curve.queries_with_loop, experiment.places.size());
+  fmt::print("{:<28} {:>18} {:>18} {:>16}\n", "method", "recall at 100 %", "average precision",
+             "median query ms");
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    std::vector<double> times;
+    for (const LoopQuery& query : experiment.runs[i].queries) times.push_back(query.ms);
+    fmt::print("{:<28} {:>18.4f} {:>18.4f} {:>16.2f}\n", curves[i].name,
+               curves[i].curve.recall_at_100_precision, curves[i].curve.average_precision,
+               summarise(times).median);
+  }
+}
+
+void find_loops(const LoopsArguments& arguments) {
+  LoopSettings settings = arguments.settings;
+  if (!arguments.config.empty()) {
+    settings.detector = load_options(arguments.config, settings.detector);
+  }
+  validate_options("truth", settings.poses);
+  for (const std::string& name : settings.methods) parse_loop_method(name);
+  SequenceOptions reader;
+  reader.format = settings.format;
+  reader.eye = settings.eye;
+  reader.needs_calibration = false;
+  const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, reader);
+  if (settings.truth == "poses" && sequence->ground_truth().empty()) {
+    throw InputError(fmt::format(
+        "{}: the recording has no poses, expected --ground-truth with a file", settings.sequence));
+  }
+  std::optional<LoopTruth> truth;  // a file is read at once, so that mistakes show at once
+  if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
+  Progress progress("images", sequence->size());
+  const LoopExperiment experiment = run_loop_experiment(
+      settings, *sequence,
+      [&](std::size_t done, std::size_t) { progress.update(done, "finding loops"); });
+  progress.finish();
+  if (experiment.queries.empty()) {
+    throw InputError(fmt::format("{}: no image to ask for, expected some{}", settings.sequence,
+                                 settings.second_pass_from ? " in the second pass" : ""));
+  }
+  if (!truth) truth = load_loop_truth(settings, *sequence, experiment.views);
+  const std::vector<NamedCurve> curves = judge_methods(experiment, *truth);
+  if (!settings.out.empty()) {
+    write_loop_results(settings, experiment, *truth, curves, sequence->name());
+  }
+  print_table(experiment, curves);
+  if (!sequence->skipped().empty()) {
+    const SkippedFrame& first = sequence->skipped().front();
+    fmt::print(stderr, "dxslam: {} frames were skipped; the first, {}: {}\n",
+               sequence->skipped().size(), first.index, first.reason);
+  }
+  if (!settings.out.empty()) fmt::print("results in {}\n", settings.out);
+}
+
+void add_input_options(CLI::App& command, LoopSettings& settings) {
+  command.add_option("SEQUENCE", settings.sequence, "Folder of the recording or of images")
+      ->required();
+  command
+      .add_option("--ground-truth", settings.truth,
+                  "`poses`, or a square matrix as .mat (v5), text or black-and-white image")
+      ->required();
+  command.add_option("--format", settings.format,
+                     "auto, tum, 7scenes, openloris, kitti, folder or images");
+  command
+      .add_option("--eye", settings.eye,
+                  "all, left or right: images of which camera, where two take turns")
+      ->capture_default_str();
+  command.add_option("--stride", settings.stride, "Use every n-th frame")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--max-frames", settings.max_frames, "Stop after so many frames");
+  PoseLoopOptions& poses = settings.poses;
+  command.add_option("--window", poses.window, "Seconds that a view must be old to be found")
+      ->capture_default_str();
+  command.add_option("--radius", poses.radius, "True loops from poses: metres apart at most")
+      ->capture_default_str();
+  command.add_option("--angle", poses.angle, "True loops from poses: degrees apart at most")
+      ->capture_default_str();
+  command
+      .add_option("--unclear", poses.unclear,
+                  "Pairs within so many times radius and angle are neither right nor wrong")
+      ->capture_default_str();
+  command
+      .add_option("--overlap", poses.overlap,
+                  "Pairs that share this much of what they see are not wrong (with depth)")
+      ->capture_default_str();
+  command.add_option("--second-pass-from", settings.second_pass_from,
+                     "Frames before it are places only, frames from it on queries only");
+  command.add_option("--low-light-from", settings.low_light_from,
+                     "Darken the images from this frame on (low-light model)");
+  command
+      .add_option("--low-light-gain", settings.low_light_gain,
+                  fmt::format("How much (default {})", LowLight::kDefaultGain))
+      ->check(CLI::Range(0.001, 1.0));
+}
+
+void add_method_options(CLI::App& command, LoopsArguments& arguments) {
+  LoopSettings& settings = arguments.settings;
+  command
+      .add_option(
+          "--method", settings.methods,
+          fmt::format("One or more, separated by commas: {}", fmt::join(loop_method_names(), ", ")))
+      ->delimiter(',')
+      ->required();
+  command.add_option("--config", arguments.config,
+                     "YAML file of thresholds and other options of the detector");
+  command
+      .add_option("--candidates", settings.detector.candidates,
+                  "Similar places by words whose global descriptors are compared")
+      ->capture_default_str();
+  command.add_option("--features", settings.features,
+                     "Extractor of all methods but orb-bow: name or model manifest");
+  command.add_option("--vocabulary", settings.hf_vocabulary,
+                     "Its vocabulary (default: models/vocabulary/NAME.fbow)");
+  command.add_option("--orb-vocabulary", settings.orb_vocabulary,
+                     "Vocabulary of orb-bow (default: models/vocabulary/orb.fbow)");
+  command
+      .add_option("--max-keypoints", settings.extractor.max_keypoints,
+                  "Keypoints an image of either extractor; 0 = as it says")
+      ->capture_default_str();
+  command.add_option("--threads", settings.extractor.threads, "Threads of the network")
+      ->capture_default_str();
+  command.add_flag("--deterministic", settings.extractor.deterministic,
+                   "Exact arithmetic: the same result every time");
+  command.add_option("--out", settings.out,
+                     "Folder for candidates.csv, pr.csv, pr.svg and summary.json");
+}
+
+}  // namespace
+
+void add_loops_command(CLI::App& app) {
+  const auto arguments = std::make_shared<LoopsArguments>();
+  CLI::App* command =
+      app.add_subcommand("loops", "find loops in a recording and judge them by the truth");
+  add_input_options(*command, arguments->settings);
+  add_method_options(*command, *arguments);
+  command->callback([arguments] { find_loops(*arguments); });
+}
+
+}  // namespace dxslam::apps

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/commands.h"
+#include "apps/map_weld.h"
+#include "core/error.h"
+#include "io/primitives/atomic_file.h"
+#include "map_files/map_export.h"
+#include "map_files/map_file.h"
+#include "map_files/map_merge.h"
+#include "map_files/map_statistics.h"
+
+namespace dxslam::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+struct MapArguments {
+  std::vector<std::string> files;
+  std::string out;
+  std::string json;
+  std::string ply;
+  std::string colmap;
+  std::string thumbnails;
+  int component = -1;
+  bool apart = false;
+};
+
+Json camera_table(const Camera& c) {
+  return {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy},
+          {"cx", c.cx},       {"cy", c.cy},         {"k1", c.k1}, {"k2", c.k2},
+          {"p1", c.p1},       {"p2", c.p2},         {"k3", c.k3}};
+}
+
+Json sections_table(const std::string& path) {
+  Json sections = Json::array();
+  for (const MapFileSection& s : list_map_sections(path)) {
+    sections.push_back({{"id", s.id}, {"version", s.version}, {"bytes", s.size}});
+  }
+  return sections;
+}
+
+Json components_table(const MapStatistics& statistics) {
+  Json components = Json::array();
+  for (const ComponentSize& c : statistics.components) {
+    components.push_back({{"keyframes", c.keyframes},
+                          {"points", c.points},
+                          {"first_stamp", c.first_stamp},
+                          {"last_stamp", c.last_stamp},
+                          {"extent_m", c.extent}});
+  }
+  return components;
+}
+
+Json describe_map(const std::string& path, const StoredMap& stored, const MapStatistics& s) {
+  const DescriptorTraits& traits = stored.header.traits;
+  Json report;
+  report["file"] = path;
+  report["bytes"] = std::filesystem::file_size(path);
+  report["sections"] = sections_table(path);
+  report["camera"] = camera_table(stored.header.camera);
+  report["features"] = stored.header.extractor;
+  report["model_sha256"] = stored.header.model_hash;
+  report["descriptors"] = {{"kind", traits.binary ? "binary" : "float"},
+                           {"dimension", traits.dimension},
+                           {"global_dimension", traits.global_dimension}};
+  report["keyframes"] = stored.map.keyframe_count();
+  report["points"] = stored.map.point_count();
+  report["keypoints"] = s.keypoints;
+  report["observations"] = s.observations;
+  report["global_descriptors"] = s.globals;
+  report["loops"] = stored.loops.size();
+  report["thumbnails"] =
+      stored.thumbnails.size() -
+      static_cast<std::size_t>(std::count(stored.thumbnails.begin(), stored.thumbnails.end(), ""));
+  report["components"] = components_table(s);
+  report["reprojection_error_px"] = {{"median", s.median_error}, {"p95", s.p95_error}};
+  return report;
+}
+
+void print_info(const StoredMap& stored, const MapStatistics& s, double bytes) {
+  const MapHeader& header = stored.header;
+  const Camera& c = header.camera;
+  const double keyframes =
+      static_cast<double>(std::max<std::size_t>(1, stored.map.keyframe_count()));
+  fmt::print("features      {}, {} {} a keypoint{}\n", header.extractor, header.traits.dimension,
+             header.traits.binary ? "bytes" : "floats",
+             header.model_hash.empty() ? "" : ", weights " + header.model_hash.substr(0, 12));
+  fmt::print("camera        {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}\n", c.width, c.height,
+             c.fx, c.fy, c.cx, c.cy);
+  fmt::print("size          {:.1f} MiB, {:.1f} KiB a keyframe\n", bytes / kMebibyte,
+             bytes / 1024.0 / keyframes);
+  fmt::print("keyframes     {}, {} of them with a global descriptor\n", stored.map.keyframe_count(),
+             s.globals);
+  fmt::print("keypoints     {}\n", s.keypoints);
+  fmt::print("points        {}, seen {} times\n", stored.map.point_count(), s.observations);
+  fmt::print("loops         {}\n", stored.loops.size());
+  for (std::size_t i = 0; i < s.components.size(); ++i) {
+    const ComponentSize& part = s.components[i];
+    fmt::print("component {:<3} {} keyframes, {} points, {:.1f} m, stamps {:.3f} to {:.3f}\n", i,
+               part.keyframes, part.points, part.extent, part.first_stamp, part.last_stamp);
+  }
+}
+
+void info_command(const MapArguments& arguments) {
+  const std::string& path = arguments.files.front();
+  const StoredMap stored = load_map(path);
+  const MapStatistics statistics = map_statistics(stored);
+  print_info(stored, statistics, static_cast<double>(std::filesystem::file_size(path)));
+  for (const MapFileSection& s : list_map_sections(path)) {
+    fmt::print("section {}  version {}, {:.2f} MiB\n", s.id, s.version,
+               static_cast<double>(s.size) / kMebibyte);
+  }
+  if (arguments.json.empty()) return;
+  write_file_atomically(arguments.json, describe_map(path, stored, statistics).dump(2) + "\n");
+}
+
+void check_command(const MapArguments& arguments) {
+  const StoredMap stored = load_map(arguments.files.front());
+  const MapStatistics s = map_statistics(stored);
+  fmt::print("checksums     right\n");
+  fmt::print("relations     sound: {} keyframes, {} points, {} observations, {} loops\n",
+             stored.map.keyframe_count(), stored.map.point_count(), s.observations,
+             stored.loops.size());
+  fmt::print("reprojection  {:.2f} px median, {:.2f} px 95 %\n", s.median_error, s.p95_error);
+  fmt::print("behind camera {} observations\n", s.behind);
+  fmt::print("connected     {} groups of covisible keyframes in {} components\n",
+             s.covisible_groups, s.components.size());
+  fmt::print("blind         {} keyframes that see no point\n", s.blind_keyframes);
+}
+
+void write_thumbnails(const std::string& folder, const StoredMap& stored) {
+  namespace fs = std::filesystem;
+  make_folder(folder);
+  std::size_t written = 0;
+  for (std::size_t id = 0; id < stored.thumbnails.size(); ++id) {
+    if (stored.thumbnails[id].empty()) continue;
+    write_file_atomically((fs::path(folder) / fmt::format("{:06d}.jpg", id)).string(),
+                          stored.thumbnails[id]);
+    ++written;
+  }
+  fmt::print("{} thumbnails\n", written);
+}
+
+void export_command(const MapArguments& arguments) {
+  if (arguments.ply.empty() && arguments.colmap.empty() && arguments.thumbnails.empty()) {
+    throw CLI::RequiredError("--ply, --colmap or --thumbnails");
+  }
+  const std::string& path = arguments.files.front();
+  const StoredMap stored = load_map(path);
+  const std::uint32_t components = stored.map.component_count();
+  const auto component = static_cast<std::uint32_t>(arguments.component);
+  if (arguments.component >= 0 && component >= components) {
+    throw InputError(
+        fmt::format("{}: has no component {}, expected less than {}", path, component, components));
+  }
+  if (!arguments.ply.empty()) {
+    write_map_ply(arguments.ply, stored.map, arguments.component < 0 ? kNoId : component);
+  }
+  if (!arguments.colmap.empty()) write_map_colmap(arguments.colmap, stored);
+  if (!arguments.thumbnails.empty()) write_thumbnails(arguments.thumbnails, stored);
+}
+
+void merge_command(const MapArguments& arguments) {
+  StoredMap merged = load_map(arguments.files.front());
+  for (std::size_t i = 1; i < arguments.files.size(); ++i) {
+    const std::string& path = arguments.files[i];
+    MapSnapshot both = merge_maps(merged, arguments.files.front(), load_map(path), path);
+    merged = {both.header, Map(std::move(both.parts)), std::move(both.loops),
+              std::move(both.thumbnails)};
+  }
+  const std::size_t loops = arguments.apart ? 0 : weld_components(merged);
+  const MapSnapshot snapshot =
+      take_snapshot(merged.header, merged.map, merged.loops, merged.thumbnails);
+  save_map(arguments.out, snapshot);
+  std::uint32_t components = 0;
+  for (const Keyframe& k : snapshot.parts.keyframes) {
+    components = std::max(components, k.component + 1);
+  }
+  fmt::print("{} keyframes and {} points in {} components; {} common places\n",
+             snapshot.parts.keyframes.size(), snapshot.parts.points.size(), components, loops);
+}
+
+CLI::App* add_action(CLI::App& map, const char* name, const char* about,
+                     void (*action)(const MapArguments&), std::shared_ptr<MapArguments>& arguments,
+                     bool several = false) {
+  CLI::App* command = map.add_subcommand(name, about);
+  arguments = std::make_shared<MapArguments>();
+  CLI::Option* files =
+      command->add_option("MAP", arguments->files, several ? "map files" : "map file")->required();
+  several ? files->expected(2, 1000) : files->expected(1);
+  command->callback([action, arguments] { action(*arguments); });
+  return command;
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app) {
+  CLI::App* map = app.add_subcommand("map", "look at, check, merge and export saved maps");
+  map->require_subcommand(1);
+  std::shared_ptr<MapArguments> arguments;
+  add_action(*map, "info", "what a map holds", info_command, arguments)
+      ->add_option("--json", arguments->json, "also write it to a JSON file")
+      ->option_text("FILE");
+
+  add_action(*map, "check", "whether a map file is whole and sound, and how well its parts fit",
+             check_command, arguments);
+
+  CLI::App* exporting =
+      add_action(*map, "export", "write a map for other programs", export_command, arguments);
+  exporting->add_option("--ply", arguments->ply, "points and keyframes as a PLY file")
+      ->option_text("FILE");
+  exporting
+      ->add_option("--colmap", arguments->colmap,
+                   "COLMAP text files and thumbnails, one subfolder for each component")
+      ->option_text("DIR");
+  exporting->add_option("--thumbnails", arguments->thumbnails, "pictures of the keyframes")
+      ->option_text("DIR");
+  exporting->add_option("--component", arguments->component, "only this one into the PLY file")
+      ->check(CLI::NonNegativeNumber)
+      ->option_text("N");
+
+  CLI::App* merge =
+      add_action(*map, "merge", "put maps into one file and join them where they show one place",
+                 merge_command, arguments, true);
+  merge->add_flag("--apart", arguments->apart, "do not join them: components of their own");
+  merge->add_option("--out", arguments->out, "the new map file")->option_text("FILE")->required();
+}
+
+}  // namespace dxslam::apps

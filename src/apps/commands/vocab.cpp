@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "apps/commands.h"
+#include "apps/features_arguments.h"
+#include "apps/image_stream.h"
+#include "apps/process.h"
+#include "apps/progress.h"
+#include "core/error.h"
+#include "core/options.h"
+#include "features/extractor_factory.h"
+#include "io/primitives/atomic_file.h"
+#include "vocabulary/dbow2_text.h"
+#include "vocabulary/vocabulary.h"
+#include "vocabulary/vocabulary_trainer.h"
+#include "vocabulary/vocabulary_tree.h"
+
+namespace dxslam::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kImagesACheckpoint = 200;
+
+struct TrainArguments {
+  std::vector<std::string> sources;
+  std::string out;
+  std::string checkpoint;
+  FeatureArguments extractor;
+  VocabularyTrainingOptions options;
+  std::size_t stride = 1;
+  unsigned photo_views = 2;
+};
+
+// Everything that a checkpoint must agree with.
+std::string describe_training(const TrainArguments& arguments, const std::string& features) {
+  const VocabularyTrainingOptions& o = arguments.options;
+  return fmt::format("{} of {} keypoints {} from {} stride {} views {}: {} {} {} {}", o.method,
+                     features, arguments.extractor.options.max_keypoints,
+                     fmt::join(arguments.sources, " "), arguments.stride, arguments.photo_views,
+                     o.matched_per_image, o.match_ratio, o.max_open_words, o.sample_mb);
+}
+
+void add_photo(VocabularyTrainer& trainer, FeatureExtractor& extractor, const cv::Mat& photo,
+               std::size_t index, unsigned views) {
+  for (unsigned v = 0; v < views; ++v) {
+    const cv::Mat view = changed_view(photo, static_cast<unsigned>(index) * views + v);
+    trainer.add(extractor.extract(view, false));
+  }
+}
+
+// Works through the images; false if it was interrupted.
+bool add_images(const TrainArguments& arguments, ImageStream& stream, FeatureExtractor& extractor,
+                VocabularyTrainer& trainer, const std::string& source) {
+  std::size_t position = 0;
+  if (!arguments.checkpoint.empty() && fs::exists(arguments.checkpoint)) {
+    position = trainer.load(arguments.checkpoint, source);
+    fmt::print("going on at image {} of {}\n", position, stream.size());
+  }
+  Progress progress("images", stream.size());
+  stream.visit(position, [&](std::size_t index, const ImageStream::Item& item) {
+    if (item.first) trainer.start_sequence();
+    trainer.add(extractor.extract(item.image, false));
+    if (item.photo) {
+      add_photo(trainer, extractor, item.image, index, arguments.photo_views);
+    }
+    position = index + 1;
+    progress.update(position, fmt::format("{} words open", trainer.open_words()));
+    if (!arguments.checkpoint.empty() && position % kImagesACheckpoint == 0) {
+      trainer.save(arguments.checkpoint, source, position);
+    }
+    return !stop_requested();
+  });
+  progress.finish();
+  if (!stop_requested()) return true;
+  if (!arguments.checkpoint.empty()) trainer.save(arguments.checkpoint, source, position);
+  return false;
+}
+
+int train(const TrainArguments& arguments) {
+  catch_signals();
+  const std::unique_ptr<FeatureExtractor> extractor = make_extractor(arguments.extractor);
+  VocabularyTrainer trainer(extractor->traits(), arguments.options);
+  ImageStream stream(arguments.sources, arguments.stride);
+  const std::string source = describe_training(arguments, extractor->name());
+  if (!add_images(arguments, stream, *extractor, trainer, source)) return kInterrupted;
+
+  Progress progress("tree", 1000);
+  const Vocabulary vocabulary = trainer.finish(
+      fmt::format("{} {}", extractor->name(), arguments.options.method), [&](double share) {
+        progress.update(static_cast<std::size_t>(share * 1000.0), "per mille");
+      });
+  progress.finish();
+  vocabulary.save(arguments.out);
+  if (!arguments.checkpoint.empty()) fs::remove(arguments.checkpoint);
+  const VocabularyInfo info = vocabulary.info();
+  fmt::print("{}: {} words of {} {} from {} images, {} levels\n", arguments.out, info.words,
+             info.dimension, info.binary ? "bytes" : "floats", trainer.images(), info.depth);
+  if (stream.skipped() > 0) {
+    fmt::print(stderr, "dxslam: {} images were skipped; the first: {}\n", stream.skipped(),
+               stream.first_skipped());
+  }
+  return kSuccess;
+}
+
+void print_info(const std::string& path) {
+  const VocabularyInfo info = Vocabulary::load(path).info();
+  fmt::print("name         {}\n", info.name.empty() ? "none" : info.name);
+  fmt::print("descriptors  {} {}\n", info.dimension, info.binary ? "bytes" : "floats");
+  fmt::print("words        {}{}\n", info.words, info.distinct_words ? "" : ", some ids shared");
+  fmt::print("inner nodes  {}\n", info.inner_nodes);
+  fmt::print("branching    {}\n", info.branching);
+  fmt::print("depth        {}\n", info.depth);
+  fmt::print("weights      {:.4g} to {:.4g}\n", info.min_weight, info.max_weight);
+  fmt::print("size         {:.2f} MB\n", static_cast<double>(info.bytes) / 1e6);
+  fmt::print("file         {}\n", !info.mapped        ? "DBoW2 text"
+                                  : info.has_checksum ? "FBoW with checksum"
+                                                      : "FBoW");
+}
+
+struct ConvertArguments {
+  std::string in;
+  std::string out;
+  std::string format = "auto";
+};
+
+void convert(const ConvertArguments& arguments) {
+  std::string format = arguments.format;
+  if (format == "auto") format = fs::path(arguments.out).extension() == ".txt" ? "dbow2" : "fbow";
+  const Vocabulary vocabulary = Vocabulary::load(arguments.in);
+  if (format == "dbow2") {
+    write_file_atomically(arguments.out, format_dbow2_text(vocabulary.tree()));
+  } else {
+    vocabulary.save(arguments.out);
+  }
+  fmt::print("{}: {} words as {}\n", arguments.out, vocabulary.word_count(),
+             format == "dbow2" ? "DBoW2 text" : "FBoW");
+}
+
+void add_train_command(CLI::App& vocab) {
+  const auto arguments = std::make_shared<TrainArguments>();
+  VocabularyTrainingOptions& options = arguments->options;
+  CLI::App* command = vocab.add_subcommand("train", "train a vocabulary from images");
+  command
+      ->add_option("SEQUENCE", arguments->sources,
+                   "folders of recordings or photos; FOLDER@FIRST:END[:STEP] takes a part")
+      ->required();
+  command->add_option("--out", arguments->out, "FBoW file to write")->required();
+  command->add_option("--method", options.method, "incremental (the paper's) or kmeans")
+      ->check(CLI::IsMember({"incremental", "kmeans"}))
+      ->capture_default_str();
+  command->add_option("--branching", options.branching, "most children of a node")
+      ->capture_default_str();
+  command->add_option("--depth", options.depth, "most levels, 0 = as needed")
+      ->capture_default_str();
+  command->add_option("--words", options.words, "most words, 0 = no limit")->capture_default_str();
+  command
+      ->add_option("--matched-per-image", options.matched_per_image,
+                   "best matched descriptors of an image that join their words")
+      ->capture_default_str();
+  command->add_option("--match-ratio", options.match_ratio, "ratio test of matches, 1 = none")
+      ->capture_default_str();
+  command
+      ->add_option("--min-observations", options.min_observations,
+                   "images that must have seen a word")
+      ->capture_default_str();
+  command->add_option("--max-open-words", options.max_open_words, "words kept while training")
+      ->capture_default_str();
+  command->add_option("--sample-mb", options.sample_mb, "memory for sampled images")
+      ->capture_default_str();
+  command->add_option("--seed", options.seed, "seed of the clustering")->capture_default_str();
+  command->add_option("--stride", arguments->stride, "use every n-th image")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--photo-views", arguments->photo_views,
+                   "changed views that follow each single photo as its neighbours")
+      ->capture_default_str();
+  command->add_option("--checkpoint", arguments->checkpoint,
+                      "file for the state of an interrupted training, which a second call with the "
+                      "same arguments goes on from");
+  add_feature_options(*command, arguments->extractor);
+  command->callback([arguments] {
+    if (const int code = train(*arguments); code != kSuccess) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace
+
+void add_vocab_command(CLI::App& app) {
+  CLI::App* vocab = app.add_subcommand("vocab", "train, inspect and convert vocabularies");
+  vocab->require_subcommand(1);
+  add_train_command(*vocab);
+
+  const auto path = std::make_shared<std::string>();
+  CLI::App* info = vocab->add_subcommand("info", "check a vocabulary and say what it is");
+  info->add_option("FILE", *path, "FBoW or DBoW2 text file")->required();
+  info->callback([path] { print_info(*path); });
+
+  const auto arguments = std::make_shared<ConvertArguments>();
+  CLI::App* to = vocab->add_subcommand("convert", "write a vocabulary in another format");
+  to->add_option("IN", arguments->in, "FBoW or DBoW2 text file")->required();
+  to->add_option("OUT", arguments->out, "file to write")->required();
+  to->add_option("--to", arguments->format, "fbow, dbow2 or auto (dbow2 for .txt)")
+      ->check(CLI::IsMember({"auto", "fbow", "dbow2"}))
+      ->capture_default_str();
+  to->callback([arguments] { convert(*arguments); });
+}
+
+}  // namespace dxslam::apps

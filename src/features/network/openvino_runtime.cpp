@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "features/network/openvino_runtime.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/error.h"
+#include "features/data_directory.h"
+#include "features/network/openvino_model.h"
+
+namespace dxslam {
+namespace {
+
+/// One OpenVINO runtime for the whole program, alive as long as an engine uses it.
+std::shared_ptr<ov::Core> shared_core() {
+  static std::mutex mutex;
+  static std::weak_ptr<ov::Core> weak;
+  const std::lock_guard<std::mutex> lock(mutex);
+  auto core = weak.lock();
+  if (!core) {
+    core = std::make_shared<ov::Core>();
+    weak = core;
+  }
+  return core;
+}
+
+Precision choose_precision(const ModelManifest& manifest, const ExtractorOptions& options,
+                           const ov::Core& core) {
+  const std::string& wanted = options.precision;
+  if (wanted != "auto" && wanted != "f32" && wanted != "bf16" && wanted != "int8") {
+    throw InputError(
+        fmt::format("option precision is `{}`, expected auto, f32, bf16 or int8", wanted));
+  }
+  if (wanted == "int8" && !manifest.has_int8()) {
+    throw InputError(fmt::format("{}: has no INT8 model, expected files.int8 for precision int8",
+                                 manifest.path));
+  }
+  if (wanted == "int8" || (wanted == "auto" && manifest.has_int8() && !options.deterministic)) {
+    return {true, false, "int8"};
+  }
+  if (wanted == "f32" || options.deterministic) return {false, false, "f32"};
+  const auto capabilities = core.get_property("CPU", ov::device::capabilities);
+  const bool bf16 = std::find(capabilities.begin(), capabilities.end(),
+                              ov::device::capability::BF16) != capabilities.end();
+  return {false, bf16, bf16 ? "bf16" : "f32"};
+}
+
+int depth_of(const ov::element::Type& type) {
+  if (type == ov::element::u8) return CV_8U;
+  if (type == ov::element::i8) return CV_8S;
+  require(type == ov::element::f32, "tensors are of u8, i8 or f32 outside of the networks");
+  return CV_32F;
+}
+
+ov::element::Type type_of(int depth) {
+  if (depth == CV_8U) return ov::element::u8;
+  if (depth == CV_8S) return ov::element::i8;
+  require(depth == CV_32F, "tensors are of u8, i8 or f32 outside of the networks");
+  return ov::element::f32;
+}
+
+}  // namespace
+
+ModelCompiler::ModelCompiler(const ModelManifest& manifest, const ExtractorOptions& options)
+    : options_(options),
+      core_(shared_core()),
+      precision_(choose_precision(manifest, options, *core_)) {}
+
+ov::InferRequest ModelCompiler::compile(const std::shared_ptr<ov::Model>& model,
+                                        const std::string& path) const {
+  ov::AnyMap properties{ov::hint::performance_mode(ov::hint::PerformanceMode::LATENCY),
+                        ov::num_streams(1), ov::inference_num_threads(options_.threads)};
+  properties.insert(ov::hint::inference_precision(precision_.bf16_allowed ? ov::element::bf16
+                                                                          : ov::element::f32));
+  const std::string cache = options_.cache_dir == "auto" ? cache_directory() : options_.cache_dir;
+  if (!cache.empty()) properties.insert(ov::cache_dir(cache));
+  try {
+    return core_->compile_model(model, "CPU", properties).create_infer_request();
+  } catch (const ov::Exception& e) {
+    throw InputError(fmt::format("{}: cannot be compiled: {}", path, short_reason(e)));
+  }
+}
+
+void infer(ov::InferRequest& request, const std::string& path) {
+  try {
+    request.infer();
+  } catch (const ov::Exception& e) {
+    throw InputError(fmt::format("{}: the network failed: {}", path, short_reason(e)));
+  }
+}
+
+std::vector<float> VectorModel::run(const ov::Tensor& input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  auto found = requests_.find(input.get_shape());
+  if (found == requests_.end()) {
+    auto request = compiler_.compile(build_(input.get_shape()), path_);
+    found = requests_.emplace(input.get_shape(), std::move(request)).first;
+  }
+  ov::InferRequest& request = found->second;
+  require(request.get_compiled_model().input().get_element_type() == input.get_element_type(),
+          "the global descriptor is asked for from another extractor's encoder");
+  request.set_input_tensor(input);
+  infer(request, path_);
+  return values_of(request.get_output_tensor(0));
+}
+
+std::vector<float> values_of(const ov::Tensor& tensor) {
+  const float* data = tensor.data<const float>();
+  return {data, data + tensor.get_size()};
+}
+
+cv::Mat copy_of(const ov::Tensor& tensor) {
+  std::vector<int> sizes;
+  for (const std::size_t size : tensor.get_shape()) sizes.push_back(static_cast<int>(size));
+  cv::Mat copy(sizes, depth_of(tensor.get_element_type()));
+  std::memcpy(copy.data, tensor.data(), tensor.get_byte_size());
+  return copy;
+}
+
+ov::Tensor as_tensor(const cv::Mat& matrix) {
+  ov::Shape shape;
+  for (int i = 0; i < matrix.dims; ++i) shape.push_back(static_cast<std::size_t>(matrix.size[i]));
+  return {type_of(matrix.depth()), shape, matrix.data};
+}
+
+}  // namespace dxslam

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "io/formats/trajectory_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "core/error.h"
+#include "io/primitives/atomic_file.h"
+#include "io/primitives/text_file.h"
+
+namespace dxslam {
+namespace {
+
+constexpr const char* kHeader = "# timestamp tx ty tz qx qy qz qw\n";
+constexpr const char* kExpected = "a trajectory in TUM format (stamp tx ty tz qx qy qz qw)";
+constexpr double kQuaternionTolerance = 0.01;
+
+StampedPose parse_pose(const std::string& path, const TextRow& row) {
+  static constexpr const char* kColumns[] = {"stamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+  if (row.fields.size() != std::size(kColumns)) {
+    throw InputError(fmt::format("{}: {} columns, expected 8 (stamp tx ty tz qx qy qz qw)",
+                                 at_line(path, row.line), row.fields.size()));
+  }
+  double v[8];
+  for (std::size_t i = 0; i < std::size(kColumns); ++i) {
+    v[i] = finite_field(path, row, i, kColumns[i]);
+  }
+  const Eigen::Quaterniond rotation(v[7], v[4], v[5], v[6]);
+  const double length = rotation.norm();
+  if (!(std::abs(length - 1.0) <= kQuaternionTolerance)) {
+    throw InputError(fmt::format("{}: quaternion of length {:.4g}, expected 1",
+                                 at_line(path, row.line), length));
+  }
+  return {v[0], SE3(rotation, Eigen::Vector3d(v[1], v[2], v[3]))};
+}
+
+}  // namespace
+
+Trajectory read_trajectory(const std::string& path) {
+  Trajectory trajectory;
+  for (const TextRow& row : read_table(path, kExpected)) {
+    trajectory.push_back(parse_pose(path, row));
+    const std::size_t n = trajectory.size();
+    if (n > 1 && trajectory[n - 1].stamp < trajectory[n - 2].stamp) {
+      throw InputError(fmt::format("{}: stamp {:.6f} after {:.6f}, expected rising stamps",
+                                   at_line(path, row.line), trajectory[n - 1].stamp,
+                                   trajectory[n - 2].stamp));
+    }
+  }
+  if (trajectory.empty()) {
+    throw InputError(fmt::format("{}: no pose in it, expected {}", path, kExpected));
+  }
+  return trajectory;
+}
+
+std::string format_pose(const StampedPose& pose) {
+  const Eigen::Vector3d& t = pose.world_from_camera.translation();
+  const Eigen::Quaterniond& q = pose.world_from_camera.rotation();
+  return fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}", pose.stamp, t.x(),
+                     t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+}
+
+void write_trajectory(const std::string& path, const Trajectory& trajectory) {
+  std::string text = kHeader;
+  for (const StampedPose& pose : trajectory) text += format_pose(pose) + "\n";
+  write_file_atomically(path, text);
+}
+
+TrajectoryWriter::TrajectoryWriter(const std::string& path)
+    : path_(path),
+      file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666)) {
+  if (file_ < 0) {
+    throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  }
+  try {
+    write(kHeader);
+  } catch (...) {
+    ::close(file_);
+    throw;
+  }
+}
+
+TrajectoryWriter::~TrajectoryWriter() { ::close(file_); }
+
+void TrajectoryWriter::append(const StampedPose& pose) { write(format_pose(pose) + "\n"); }
+
+void TrajectoryWriter::write(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(file_, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      throw InputError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace dxslam

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "io/recordings/listed_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "io/primitives/image_file.h"
+
+namespace dxslam {
+namespace {
+
+constexpr std::size_t kProbed = 3;  // frames decoded at opening
+constexpr std::size_t kProbeAttempts = 10;
+constexpr double kNearestScene = 0.05;    // metres, least plausible median depth
+constexpr double kFarthestScene = 30.0;   // metres, largest plausible median depth
+constexpr double kEnoughReadings = 0.01;  // share of pixels below which a median says nothing
+
+class ListedSequence : public RgbdSequence {
+ public:
+  explicit ListedSequence(SequenceListing listing)
+      : listing_(std::move(listing)), skipped_(listing_.skipped) {}
+
+  const std::string& name() const override { return listing_.name; }
+  const Camera& camera() const override { return listing_.camera; }
+  std::size_t size() const override { return listing_.frames.size(); }
+  double stamp(std::size_t index) const override {
+    require(index < size(), "frame index beyond the sequence");
+    return listing_.frames[index].stamp;
+  }
+  const std::vector<SkippedFrame>& skipped() const override { return skipped_; }
+  const Trajectory& ground_truth() const override { return listing_.ground_truth; }
+
+  std::optional<RgbdImage> read(std::size_t index) override {
+    require(index < size(), "frame index beyond the sequence");
+    try {
+      return decode(index);
+    } catch (const InputError& e) {
+      skipped_.push_back({index, e.what()});
+      return std::nullopt;
+    }
+  }
+
+  // Throws the first frame's error if no probed frame can be read.
+  void probe() const {
+    std::vector<float> depths;
+    std::size_t pixels = 0;
+    std::size_t good = 0;
+    std::string first_error;
+    for (std::size_t i = 0; i < std::min(size(), kProbeAttempts) && good < kProbed; ++i) {
+      try {
+        const RgbdImage image = decode(i);
+        collect_depths(image.depth, depths);
+        pixels += image.depth.total();
+        ++good;
+      } catch (const InputError& e) {
+        if (first_error.empty()) first_error = e.what();
+      }
+    }
+    if (good == 0) throw InputError(first_error);
+    check_scale(depths, pixels);
+  }
+
+ private:
+  RgbdImage decode(std::size_t index) const {
+    const ListedFrame& files = listing_.frames[index];
+    RgbdImage image;
+    image.index = static_cast<std::int64_t>(index);
+    image.stamp = files.stamp;
+    image.color = read_color_image(files.color);
+    check_size(image.color, files.color);
+    if (files.depth.empty()) return image;
+    cv::Mat raw = read_depth_image(files.depth);
+    check_size(raw, files.depth);
+    if (listing_.register_depth) raw = listing_.register_depth(raw);
+    raw.convertTo(image.depth, CV_32F, 1.0 / listing_.camera.depth_factor);
+    return image;
+  }
+
+  void check_size(const cv::Mat& image, const std::string& file) const {
+    const Camera& camera = listing_.camera;
+    if (image.cols == camera.width && image.rows == camera.height) return;
+    throw InputError(fmt::format("{}: image of {}x{} pixels, expected {}x{} as {} says", file,
+                                 image.cols, image.rows, camera.width, camera.height,
+                                 listing_.calibration_source));
+  }
+
+  static void collect_depths(const cv::Mat& depth, std::vector<float>& depths) {
+    for (int row = 0; row < depth.rows; ++row) {
+      const float* line = depth.ptr<float>(row);
+      std::copy_if(line, line + depth.cols, std::back_inserter(depths),
+                   [](float metres) { return metres > 0.0F; });
+    }
+  }
+
+  void check_scale(std::vector<float>& depths, std::size_t pixels) const {
+    if (depths.empty() ||
+        static_cast<double>(depths.size()) < kEnoughReadings * static_cast<double>(pixels)) {
+      return;
+    }
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    if (*middle >= kNearestScene && *middle <= kFarthestScene) return;
+    throw InputError(fmt::format(
+        "{}: median depth of the first images is {:.3g} m with depth_factor {} of {}, expected {} "
+        "to {} m: the factor must be the raw value of one metre",
+        listing_.name, *middle, listing_.camera.depth_factor, listing_.calibration_source,
+        kNearestScene, kFarthestScene));
+  }
+
+  SequenceListing listing_;
+  std::vector<SkippedFrame> skipped_;
+};
+
+}  // namespace
+
+std::unique_ptr<RgbdSequence> make_sequence(SequenceListing listing) {
+  require(!listing.frames.empty(), "a sequence must have frames");
+  listing.camera.validate(listing.calibration_source);
+  auto sequence = std::make_unique<ListedSequence>(std::move(listing));
+  sequence->probe();
+  return sequence;
+}
+
+}  // namespace dxslam

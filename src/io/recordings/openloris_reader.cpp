@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "core/error.h"
+#include "io/calibration/calibration.h"
+#include "io/formats/trajectory_file.h"
+#include "io/primitives/text_file.h"
+#include "io/recordings/openloris_sensors.h"
+#include "io/recordings/sequence_formats.h"
+
+namespace dxslam {
+namespace {
+
+constexpr const char* kColorFrame = "d400_color_optical_frame";
+constexpr const char* kBaseFrame = "base_link";
+
+// The dataset's files are OpenCV's dialect, whose first line "%YAML:1.0" is not YAML.
+YAML::Node load_opencv_yaml(const std::string& path) {
+  std::string text = read_file(path, "a YAML file of OpenLORIS-Scene");
+  if (!text.empty() && text.front() == '%') {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    text.replace(0, end, end, ' ');
+  }
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& e) {
+    throw InputError(fmt::format("{}: not valid YAML: {}", at_line(path, e.mark.line + 1), e.msg));
+  }
+}
+
+// Entry `key`, or an empty node where there is none: yaml-cpp throws when asked about missing ones.
+YAML::Node child(const YAML::Node& node, const char* key) {
+  if (!node.IsMap()) return {};
+  const YAML::Node value = node[key];
+  return value ? value : YAML::Node();
+}
+
+std::string scalar_text(const YAML::Node& map, const char* key) {
+  const YAML::Node node = child(map, key);
+  return node.IsScalar() ? node.Scalar() : std::string();
+}
+
+// `count` finite numbers of the "data" list of an OpenCV matrix.
+std::vector<double> matrix_data(const YAML::Node& matrix, std::size_t count,
+                                const std::string& path, const std::string& what) {
+  const YAML::Node data = child(matrix, "data");
+  std::vector<double> values;
+  if (data.IsSequence()) {
+    for (const YAML::Node& item : data) {
+      const auto value = parse_number(item.IsScalar() ? item.Scalar() : "");
+      if (value && std::isfinite(*value)) values.push_back(*value);
+    }
+  }
+  if (values.size() == count && data.size() == count) return values;
+  throw InputError(fmt::format("{}: {} has no list of {} finite numbers", path, what, count));
+}
+
+double scalar(const YAML::Node& map, const char* key, const std::string& path) {
+  const auto value = parse_number(scalar_text(map, key));
+  if (value && std::isfinite(*value)) return *value;
+  throw InputError(fmt::format("{}: {} of {} is missing or no number", path, key, kColorFrame));
+}
+
+// Intrinsics of the colour camera: fx cx fy cy, then k1 k2 p1 p2 k3.
+void read_sensors(const std::string& path, Camera& camera) {
+  const YAML::Node sensor = child(load_opencv_yaml(path), kColorFrame);
+  if (!sensor.IsMap()) {
+    throw InputError(fmt::format("{}: no sensor {} in it", path, kColorFrame));
+  }
+  const auto pinhole = matrix_data(child(sensor, "intrinsics"), 4, path, "intrinsics");
+  camera.width = static_cast<int>(std::clamp(scalar(sensor, "width", path), 0.0, 1e6));
+  camera.height = static_cast<int>(std::clamp(scalar(sensor, "height", path), 0.0, 1e6));
+  camera.fps = scalar(sensor, "fps", path);
+  camera.fx = pinhole[0];
+  camera.cx = pinhole[1];
+  camera.fy = pinhole[2];
+  camera.cy = pinhole[3];
+  if (child(sensor, "distortion_coefficients").IsNull()) return;
+  const auto distortion =
+      matrix_data(child(sensor, "distortion_coefficients"), 5, path, "distortion_coefficients");
+  camera.k1 = distortion[0];
+  camera.k2 = distortion[1];
+  camera.p1 = distortion[2];
+  camera.p2 = distortion[3];
+  camera.k3 = distortion[4];
+}
+
+std::optional<SE3> read_base_from_color(const std::string& path) {
+  const YAML::Node list = child(load_opencv_yaml(path), "trans_matrix");
+  if (!list.IsSequence()) {
+    throw InputError(fmt::format("{}: no list trans_matrix in it", path));
+  }
+  for (const YAML::Node& item : list) {
+    if (scalar_text(item, "parent_frame") != kBaseFrame ||
+        scalar_text(item, "child_frame") != kColorFrame) {
+      continue;
+    }
+    const auto data = matrix_data(child(item, "matrix"), 16, path, "matrix of the colour camera");
+    double values[16];
+    std::copy(data.begin(), data.end(), values);
+    return pose_from_row_major(values, at_line(path, item.Mark().line + 1));
+  }
+  return std::nullopt;
+}
+
+void calibrate(const std::string& folder, bool market, const SequenceOptions& options,
+               SequenceListing& listing) {
+  if (use_explicit_calibration(folder, options, listing)) return;
+  const std::string sensors = in_folder(folder, "sensors.yaml");
+  const bool has_sensors = std::filesystem::exists(sensors);
+  if (market && !has_sensors) {
+    throw InputError(
+        fmt::format("{}: no calibration: market was recorded with a camera of its own, expected "
+                    "sensors.yaml in "
+                    "the folder or --calibration",
+                    folder));
+  }
+  listing.camera = load_camera("openloris_d435i");
+  listing.calibration_source = has_sensors ? sensors : "preset openloris_d435i";
+  if (has_sensors) read_sensors(sensors, listing.camera);
+}
+
+}  // namespace
+
+SequenceListing list_openloris(const std::string& folder, const SequenceOptions& options) {
+  SequenceListing listing;
+  listing.name = folder_name(folder);
+  associate_lists(folder, "color.txt", "aligned_depth.txt", options, listing);
+  const bool market = listing.name.find("market") != std::string::npos;
+  calibrate(folder, market, options, listing);
+
+  const std::string truth = in_folder(folder, "groundtruth.txt");
+  if (!std::filesystem::exists(truth)) return listing;
+  const std::string transforms = in_folder(folder, "trans_matrix.yaml");
+  std::optional<SE3> base_from_color;
+  if (std::filesystem::exists(transforms)) base_from_color = read_base_from_color(transforms);
+  // As published with the dataset, where the folder has no trans_matrix.yaml.
+  if (!base_from_color) base_from_color = openloris_base_from_sensor(market, "d400_color");
+  for (const StampedPose& pose : read_trajectory(truth)) {
+    listing.ground_truth.push_back({pose.stamp, pose.world_from_camera * *base_from_color});
+  }
+  return listing;
+}
+
+}  // namespace dxslam

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "io/recordings/listed_sequence.h"
+#include "io/recordings/sequence_reader.h"
+
+namespace dxslam {
+
+// One function a format, each in a file of its own; `folder` exists. All throw InputError.
+SequenceListing list_tum(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_openloris(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_seven_scenes(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_folder(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_kitti(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_image_folder(const std::string& folder, const SequenceOptions& options);
+
+/// Whether `folder` holds frames named as those of 7-Scenes.
+bool has_seven_scenes_frames(const std::string& folder);
+/// Whether `folder` holds PNG or JPEG files.
+bool has_images(const std::string& folder);
+
+// What the readers share.
+
+/// "folder/name".
+std::string in_folder(const std::string& folder, const std::string& name);
+/// Last part of the path, also of one that ends with '/'.
+std::string folder_name(const std::string& folder);
+/// The calibration the user gave, or the folder's own calibration.yaml or camera.yaml; returns
+/// whether there was one, and then sets the camera, its source and, where the depth camera is
+/// given, the registration.
+bool use_explicit_calibration(const std::string& folder, const SequenceOptions& options,
+                              SequenceListing& listing);
+/// Frames from two lists of "stamp file", each colour image with the depth image nearest in time,
+/// or from the association file of the options. Fills frames and skipped.
+void associate_lists(const std::string& folder, const std::string& color_list,
+                     const std::string& depth_list, const SequenceOptions& options,
+                     SequenceListing& listing);
+/// world_from_camera of 16 numbers, row by row. `where` is "FILE:LINE" for messages. Throws unless
+/// the rotation is orthonormal within 1 % and the last row is 0 0 0 1.
+SE3 pose_from_row_major(const double (&values)[16], const std::string& where);
+/// PNG and JPEG files of a folder in the order of their names, numbers by value. Throws InputError
+/// if there is none.
+std::vector<std::filesystem::path> list_images(const std::string& folder);
+/// Size of the first readable one; throws InputError if none of the first ten is.
+cv::Size image_size(const std::vector<std::filesystem::path>& images);
+/// The camera of SequenceOptions::needs_calibration = false.
+Camera made_up_camera(cv::Size size);
+
+}  // namespace dxslam
