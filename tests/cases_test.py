@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright 2026 The dxslam authors
+"""Runs the scripts of $DXSLAM_SHARED/cases/reports, which show faults that users met, and judges what
+they print. `EXPECTED` says for each report what its output must hold and must not hold.
+
+usage: cases_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
+"""
+import os
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
+SHARED = Path(os.environ.get("DXSLAM_SHARED", ROOT.parent / "shared"))
+REPORTS = SHARED / "cases" / "reports"
+SKIPPED = 77
+TIMEOUT = 300
+
+# Report: (regular expressions found in its output, regular expressions not found in it).
+EXPECTED = {
+}
+
+# A crash, an internal error, or a death by a signal (128 + its number).
+NEVER = [r"internal error", r"exit 70", r"exit 1[2-9][0-9]", r"exit -[0-9]", r"Segmentation fault",
+         r"terminate called"]
+
+
+def report_names():
+    return sorted(path.parent.name for path in REPORTS.glob("*/run.sh"))
+
+
+class Reports(unittest.TestCase):
+    """One test for each report, added below."""
+
+
+def add_test(name):
+    def test(self):
+        done = subprocess.run(["bash", REPORTS / name / "run.sh"], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, cwd=ROOT,
+                              text=True, errors="replace", timeout=TIMEOUT,
+                              env={**os.environ, "DXSLAM": PROGRAM, "DXSLAM_SHARED": str(SHARED)})
+        wanted, unwanted = EXPECTED.get(name, ([], []))
+        for pattern in wanted:
+            self.assertRegex(done.stdout, pattern)
+        for pattern in [*NEVER, *unwanted]:
+            self.assertNotRegex(done.stdout, pattern)
+
+    setattr(Reports, "test_" + re.sub(r"\W", "_", name), test)
+
+
+for _name in report_names():
+    add_test(_name)
+
+
+if __name__ == "__main__":
+    if not report_names():
+        print(f"skipped: {REPORTS} is not there")
+        sys.exit(SKIPPED)
+    sys.exit(unittest.main())
