@@ -105,6 +105,38 @@ def function_lengths(text):
         line += character == "\n"
 
 
+def definitions(text):
+    """(line, what it is) of every type and function that a text defines in a named namespace: `type
+    a::B`, or `function a::b(parameters) const`."""
+    code = re.sub(r"^[ \t]*#.*(?:\\\n.*)*", "", without_literals(text), flags=re.M)
+    scopes, head, line = [], "", 1
+    for character in code:
+        line += character == "\n"
+        if character == "{":
+            words = re.sub(r"\) ?: ?\w+ ?[({].*", ")", " ".join(head.split()))  # no initialisers
+            namespace = re.search(r"\bnamespace\b\s*([\w:]*)$", words)
+            name = "" if scopes and not all(scopes) else namespace and namespace.group(1)
+            if not namespace and scopes and all(scopes):
+                head_of_type = re.match(
+                    r"(?:template ?<.*> )?(?:struct|class|enum(?: class)?|union) (?:alignas\(.*\) )?"
+                    r"([\w:]*\w)(?: final)?(?: ?:.*)?$", words)
+                function = re.match(r"(?:.* |.*[&*>])?([\w:~]+|operator.+?) ?(\(.*\).*)$", words)
+                if head_of_type:
+                    yield line, f"type {'::'.join([*scopes, head_of_type.group(1)])}"
+                elif function and "static" not in words.split() and not words.endswith("="):
+                    yield line, "function " + "::".join([*scopes, "".join(function.groups())])
+            scopes.append(name)
+            head = ""
+        elif character == "}":
+            if scopes:
+                scopes.pop()
+            head = ""
+        elif character == ";":
+            head = ""
+        else:
+            head += character
+
+
 class Layers(unittest.TestCase):
     def test_order_and_folders_agree(self):
         folders = {path.parent.name for path in SOURCE.glob("*/CMakeLists.txt")}
@@ -171,6 +203,17 @@ class Sources(unittest.TestCase):
                 if lines > MAX_FUNCTION_LINES]
         self.assertFalse(long, f"longer than {MAX_FUNCTION_LINES} lines: {long}")
 
+    def test_nothing_is_defined_twice(self):
+        """Two types of one name, or two inline functions, silently become one in a program that
+        links both."""
+        found = {}
+        for path in source_files():
+            for line, what in definitions(path.read_text()):
+                found.setdefault(what, []).append(f"{path.relative_to(ROOT)}:{line}")
+        doubles = [f"{what}: {', '.join(places)}" for what, places in found.items()
+                   if len(places) > 1]
+        self.assertFalse(doubles, "\n" + "\n".join(doubles))
+
     def test_headers_are_guarded(self):
         missing = [str(path.relative_to(ROOT)) for path in source_files()
                    if path.suffix == ".h" and "#pragma once" not in path.read_text()]
@@ -178,7 +221,23 @@ class Sources(unittest.TestCase):
 
 
 class Checker(unittest.TestCase):
-    """The function counter itself."""
+    """The readers of the sources themselves."""
+
+    def test_finds_definitions_of_named_namespaces(self):
+        text = """
+            namespace a {
+            struct Declared;
+            struct B : C { struct Inner {}; void f() {} };
+            enum class D { kOne };
+            inline int g(int x) { return x; }
+            int g(double x) { if (x > 0.0) { return 1; } return 0; }
+            B::B(int x) : x_(x) { g(x); }
+            namespace { struct Hidden {}; int hidden() { return 0; } }
+            }  // namespace a
+            struct Outside {};"""
+        self.assertEqual([what for _, what in definitions(text)],
+                         ["type a::B", "type a::D", "function a::g(int x)",
+                          "function a::g(double x)", "function a::B::B(int x)"])
 
     def test_counts_functions_not_scopes(self):
         body = "\n" * 90

@@ -16,7 +16,7 @@ int shared_points(const Keyframe& keyframe, KeyframeId other) {
   return it != keyframe.covisibles.end() && it->keyframe == other ? it->shared : 0;
 }
 
-void fill_up(const Map& map, std::size_t size, KeyframeGroup& group) {
+void fill_up(const Map& map, std::size_t size, CandidateGroup& group) {
   const std::size_t wanted = size + group.keyframes.size();  // some are members already
   for (const Covisible& c : map.best_covisibles(group.keyframes.front(), wanted, 1)) {
     if (group.keyframes.size() >= size) return;
@@ -29,17 +29,17 @@ void fill_up(const Map& map, std::size_t size, KeyframeGroup& group) {
 
 }  // namespace
 
-std::vector<KeyframeGroup> group_by_covisibility(const Map& map,
+std::vector<CandidateGroup> group_by_covisibility(const Map& map,
                                                  const std::vector<GlobalMatch>& candidates,
                                                  int min_shared, std::size_t size) {
-  std::vector<KeyframeGroup> groups;
+  std::vector<CandidateGroup> groups;
   std::vector<char> grouped(candidates.size(), 0);
   // What a group gets for a member that it does not have.
   const double floor = candidates.empty() ? 0.0 : static_cast<double>(candidates.back().similarity);
   for (std::size_t first = 0; first < candidates.size(); ++first) {
     if (grouped[first] != 0 || !map.has_keyframe(candidates[first].id)) continue;
     const Keyframe& seed = map.keyframe(candidates[first].id);
-    KeyframeGroup group;
+    CandidateGroup group;
     group.component = seed.component;
     int votes = 0;
     for (std::size_t i = first; i < candidates.size(); ++i) {
@@ -56,7 +56,7 @@ std::vector<KeyframeGroup> group_by_covisibility(const Map& map,
   }
   std::stable_sort(
       groups.begin(), groups.end(),
-      [](const KeyframeGroup& a, const KeyframeGroup& b) { return a.promise > b.promise; });
+      [](const CandidateGroup& a, const CandidateGroup& b) { return a.promise > b.promise; });
   return groups;
 }
 

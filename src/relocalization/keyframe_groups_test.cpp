@@ -29,7 +29,7 @@ class KeyframeGroups : public testing::Test {
 TEST_F(KeyframeGroups, NeighboursGoTogetherAndComponentsApart) {
   const std::vector<GlobalMatch> candidates = {
       {first_[0], 0.9F}, {second_[3], 0.8F}, {first_[1], 0.7F}, {second_[4], 0.6F}};
-  const std::vector<KeyframeGroup> groups = group_by_covisibility(map_, candidates, 20, 2);
+  const std::vector<CandidateGroup> groups = group_by_covisibility(map_, candidates, 20, 2);
   ASSERT_EQ(groups.size(), 2U);
   EXPECT_THAT(groups[0].keyframes, ElementsAre(first_[0], first_[1]));
   EXPECT_EQ(groups[0].component, 0U);
@@ -43,13 +43,13 @@ TEST_F(KeyframeGroups, ManyGoodCandidatesBeatASingleBestOne) {
                                                {first_[1], 0.8F},
                                                {first_[2], 0.8F},
                                                {second_[7], 0.1F}};
-  const std::vector<KeyframeGroup> groups = group_by_covisibility(map_, candidates, 20, 3);
+  const std::vector<CandidateGroup> groups = group_by_covisibility(map_, candidates, 20, 3);
   ASSERT_GE(groups.size(), 2U);
   EXPECT_EQ(groups[0].component, 0U);
 }
 
 TEST_F(KeyframeGroups, ASmallGroupIsFilledUpWithCovisibles) {
-  const std::vector<KeyframeGroup> groups = group_by_covisibility(map_, {{first_[3], 0.9F}}, 20, 5);
+  const std::vector<CandidateGroup> groups = group_by_covisibility(map_, {{first_[3], 0.9F}}, 20, 5);
   ASSERT_EQ(groups.size(), 1U);
   ASSERT_EQ(groups[0].keyframes.size(), 5U);
   EXPECT_EQ(groups[0].keyframes.front(), first_[3]);
@@ -59,14 +59,14 @@ TEST_F(KeyframeGroups, ASmallGroupIsFilledUpWithCovisibles) {
 TEST_F(KeyframeGroups, ALargeGroupIsCutAndItsRestMakesNoOther) {
   std::vector<GlobalMatch> candidates;
   for (std::size_t i = 0; i < 5; ++i) candidates.push_back({first_[i], 0.9F - 0.1F * i});
-  const std::vector<KeyframeGroup> groups = group_by_covisibility(map_, candidates, 1, 2);
+  const std::vector<CandidateGroup> groups = group_by_covisibility(map_, candidates, 1, 2);
   ASSERT_EQ(groups.size(), 1U);
   EXPECT_THAT(groups[0].keyframes, ElementsAre(first_[0], first_[1]));
 }
 
 TEST_F(KeyframeGroups, KeyframesThatAreGoneArePassedOver) {
   map_.remove_keyframe(first_[7]);
-  const std::vector<KeyframeGroup> groups =
+  const std::vector<CandidateGroup> groups =
       group_by_covisibility(map_, {{first_[7], 0.9F}, {first_[2], 0.8F}, {4711, 0.7F}}, 20, 1);
   ASSERT_EQ(groups.size(), 1U);
   EXPECT_THAT(groups[0].keyframes, ElementsAre(first_[2]));

@@ -46,7 +46,7 @@ class GroupAttempt {
         frame_(frame),
         refiner_(camera, traits, options, map, frame) {}
 
-  RelocalizationReport run(const KeyframeGroup& group) const {
+  RelocalizationReport run(const CandidateGroup& group) const {
     RelocalizationReport report;
     report.component = group.component;
     const GroupPoints points =
@@ -158,12 +158,12 @@ RelocalizationReport Relocalizer::relocalize(const Map& map, const GlobalIndex& 
 RelocalizationReport Relocalizer::relocalize(const Map& map,
                                              const std::vector<GlobalMatch>& candidates,
                                              const Frame& frame) const {
-  const std::vector<KeyframeGroup> groups = group_by_covisibility(
+  const std::vector<CandidateGroup> groups = group_by_covisibility(
       map, candidates, options_.min_shared, static_cast<std::size_t>(options_.group_keyframes));
   const GroupAttempt attempt(camera_, traits_, options_, map, frame);
   RelocalizationReport best;
   int tried = 0;
-  for (const KeyframeGroup& group : groups) {
+  for (const CandidateGroup& group : groups) {
     if (tried == options_.max_groups) break;
     ++tried;
     RelocalizationReport report = attempt.run(group);
