@@ -23,7 +23,7 @@ struct Camera {
   double depth_baseline = 0.075;  ///< metres, between the projector or cameras of the depth sensor
   /// Standard deviation of the depth sensor's disparity, fx * baseline / depth, as a share of that
   /// of a keypoint's pixel. Nearly the same at every distance; 0.12 with a time-of-flight camera,
-  /// 0.19 and 0.25 with two Kinects (docs/results.md).
+  /// 0.19 and 0.25 with two Kinects (docs/experiments.md).
   double disparity_noise = 0.1;
   double max_depth = 10.0;  ///< metres; farther readings count as missing
   /// Seconds from the first to the last row of an image, of a rolling shutter that starts with the
