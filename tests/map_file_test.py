@@ -79,7 +79,7 @@ class Commands(Saved):
 
     def test_info_of_a_float_map_in_words(self):
         text = self.succeed(dxslam("map", "info", FIRST_VERSION))
-        for line in (r"features +sample, 32 floats a keypoint, weights a{12}$",
+        for line in (r"features +sample, 32 floats per keypoint, weights a{12}$",
                      r"component 1 +2 keyframes", r"section GLOB +version 1"):
             self.assertRegex(text, re.compile(line, re.M))
 

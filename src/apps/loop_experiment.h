@@ -52,7 +52,7 @@ struct MethodRun {
 struct LoopExperiment {
   std::vector<std::size_t> queries;  ///< frames that were asked for
   std::vector<std::size_t> places;   ///< frames that could be found
-  std::vector<MethodRun> runs;       ///< one a method
+  std::vector<MethodRun> runs;       ///< one per method
   std::string hf_name;               ///< of the extractor; empty where no method needs it
   std::vector<double> hf_ms;         ///< extraction, by image
   std::vector<double> orb_ms;

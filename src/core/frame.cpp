@@ -42,7 +42,7 @@ void check_inputs(const RgbdImage& image, const Features& features, const Camera
               (image.depth.cols == camera.width && image.depth.rows == camera.height),
           "depth image must have the size of the camera");
   require(features.descriptors.rows == static_cast<int>(features.size()),
-          "there must be one descriptor row a keypoint");
+          "there must be one descriptor row per keypoint");
   require(features.size() == 0 || features.descriptors.type() == CV_32FC1 ||
               features.descriptors.type() == CV_8UC1,
           "descriptors must be CV_32FC1 or CV_8UC1");

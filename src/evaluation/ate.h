@@ -20,7 +20,7 @@ struct AteReport {
   ErrorStatistics position;     ///< metres
   Sim3 truth_from_estimate;     ///< the alignment found
   std::vector<PosePair> pairs;  ///< compared poses; the estimates are aligned
-  std::vector<double> errors;   ///< metres, one a pair
+  std::vector<double> errors;   ///< metres, one per pair
 };
 
 /// Absolute trajectory error (Sturm et al. 2012): distances of matched positions after aligning the

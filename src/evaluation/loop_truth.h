@@ -36,7 +36,7 @@ class LoopTruth {
 
 /// Reads a matrix of true loops: element (i, j) or (j, i) other than zero says that frames i and j
 /// show the same place; the diagonal says nothing. By content a MATLAB v5 file, an image (PNG or
-/// JPEG; grey 128 and above is a loop) or text, one row a line. Throws InputError, one sentence
+/// JPEG; grey 128 and above is a loop) or text, one row per line. Throws InputError, one sentence
 /// with the file, unless it is square and has at least one loop.
 LoopTruth read_loop_truth(const std::string& path);
 

@@ -169,7 +169,7 @@ void check(const OpenlorisResult& result) {
     require(sequence.number >= 0 && (i == 0 || result.sequences[i - 1].number < sequence.number),
             "sequences must have rising numbers");
     require(sequence.output_times.empty() || sequence.output_times.size() == sequence.poses.size(),
-            "output times must be none or one a pose");
+            "output times must be none or one per pose");
     require(std::is_sorted(sequence.poses.begin(), sequence.poses.end(),
                            [](const auto& a, const auto& b) { return a.stamp < b.stamp; }),
             "poses must be by rising stamp");

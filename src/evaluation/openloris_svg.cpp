@@ -35,12 +35,12 @@ struct SceneColumn {
   const OpenlorisReport* sample = nullptr;  // any report about the scene
   double x = 0.0;
   double width = 0.0;
-  std::vector<double> starts;  // pixels, one a sequence
+  std::vector<double> starts;  // pixels, one per sequence
 };
 
 struct Layout {
   std::vector<SceneColumn> columns;
-  double scale = 0.0;  // pixels a second
+  double scale = 0.0;  // pixels per second
 };
 
 const OpenlorisReport* report_of(const OpenlorisSystem& system, const std::string& scene) {

@@ -28,7 +28,7 @@ struct ExtractorOptions {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("max_keypoints", self.max_keypoints, {0, 20000}, "keypoints",
-          "most keypoints an image; 0 = as the extractor says");
+          "most keypoints per image; 0 = as the extractor says");
     visit("threads", self.threads, {1, 256}, "threads", "threads of the network");
     visit("precision", self.precision, "", "auto, f32, bf16 or int8");
     visit("deterministic", self.deterministic, "",

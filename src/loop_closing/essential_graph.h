@@ -21,7 +21,7 @@ struct LoopEdge {
 /// without a new loop nothing pulls.
 struct EssentialGraph {
   PoseGraph graph;                    ///< the component's first keyframe is fixed
-  std::vector<KeyframeId> keyframes;  ///< one a node, rising
+  std::vector<KeyframeId> keyframes;  ///< one per node, rising
   /// Node of a keyframe of the component; throws ContractError for others.
   int node_of(KeyframeId id) const;
 };

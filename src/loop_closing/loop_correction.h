@@ -110,7 +110,7 @@ struct LoopPlan {
   int iterations = 0;
 
   std::vector<KeyframeId> keyframes;         ///< kBend: all that take part, rising
-  std::vector<Sim3> world_from_camera;       ///< kBend: where they go, one a keyframe
+  std::vector<Sim3> world_from_camera;       ///< kBend: where they go, one per keyframe
   KeyframeId parent = kNoId, child = kNoId;  ///< kJoin, see Map::join_components
   SE3 parent_world_from_child_world;         ///< kJoin
 };

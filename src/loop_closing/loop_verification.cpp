@@ -309,7 +309,7 @@ class LoopVerifier {
   const LoopVerificationOptions& options_;
   LoopVerification report_;
   std::vector<PointId> points_;  // of the candidate's group, less those that the query sees
-  cv::Mat descriptors_;          // one row a point
+  cv::Mat descriptors_;          // one row per point
   std::vector<Match> matches_;   // by descriptor alone; a: row of the point, b: keypoint
   Fit fit_;                      // of the query
   SE3 world_from_query_;         // in the candidate's world

@@ -39,13 +39,13 @@ struct LocalMap {
   std::uint32_t component = 0;  ///< of all that is in here
   FramePtr reference_frame;
   SE3 world_from_reference;
-  std::vector<PointId> reference_points;  ///< one a keypoint of the reference; kNoId: none
+  std::vector<PointId> reference_points;  ///< one per keypoint of the reference; kNoId: none
 
   std::vector<PointId> ids;                ///< rising
   std::vector<Eigen::Vector3d> positions;  ///< in world
   std::vector<Eigen::Vector3d> normals;    ///< see MapPoint
   std::vector<float> distances;            ///< see MapPoint
-  cv::Mat descriptors;                     ///< one row a point
+  cv::Mat descriptors;                     ///< one row per point
 
   std::vector<KeyframeId> keyframes;  ///< all that are in here, rising
   std::vector<SE3> keyframe_poses;    ///< world_from_camera of each

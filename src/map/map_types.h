@@ -31,7 +31,7 @@ struct MapPoint {
   KeyframeId created_by = kNoId;
   std::uint32_t visible = 0;                   ///< frames in which it should have been seen
   std::uint32_t found = 0;                     ///< frames in which it was matched
-  std::vector<PointObservation> observations;  ///< by rising keyframe, one a keyframe
+  std::vector<PointObservation> observations;  ///< by rising keyframe, one per keyframe
   std::uint32_t descriptor = 0;                ///< index into observations
 };
 
@@ -45,7 +45,7 @@ struct Keyframe {
   KeyframeId id = kNoId;
   FramePtr frame;
   SE3 world_from_camera;
-  std::vector<PointId> points;        ///< one a keypoint; kNoId where there is none
+  std::vector<PointId> points;        ///< one per keypoint; kNoId where there is none
   std::vector<Covisible> covisibles;  ///< by rising keyframe id
   KeyframeId parent = kNoId;          ///< in the spanning tree; kNoId for a component's first
   /// Keyframes of different components have no known pose relative to one another: each has a

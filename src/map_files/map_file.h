@@ -35,7 +35,7 @@ struct MapSnapshot {
   MapHeader header;
   MapParts parts;
   std::vector<StoredLoopEdge> loops;  ///< between keyframes of one component
-  /// JPEG pictures by keyframe, "" where there is none; empty altogether, or one a keyframe.
+  /// JPEG pictures by keyframe, "" where there is none; empty altogether, or one per keyframe.
   std::vector<std::string> thumbnails;
 };
 

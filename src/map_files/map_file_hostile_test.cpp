@@ -51,7 +51,7 @@ std::string bytes_of(const MapSnapshot& snapshot, bool exact = false) {
 }
 
 // The layout of the file, stated once more: header (sections at 12, checksum of the table at 24, of
-// the header at 28), sections, table of 32 bytes an entry (offset at 8, size at 16, checksum at
+// the header at 28), sections, table of 32 bytes per entry (offset at 8, size at 16, checksum at
 // 24).
 template <class Value>
 Value peek(const std::string& file, std::size_t at) {

@@ -15,8 +15,8 @@
 
 namespace dxslam {
 
-/// The camera and descriptors of PointScene with made-up global descriptors; or 32 bytes a keypoint
-/// and no global descriptor.
+/// The camera and descriptors of PointScene with made-up global descriptors; or 32 bytes per
+/// keypoint and no global descriptor.
 inline MapHeader sample_header(bool binary = false) {
   const PointScene scene(1);
   MapHeader header;

@@ -14,8 +14,8 @@ namespace dxslam {
 /// A bundle problem cut out of the map, with the ids its numbers belong to.
 struct LocalBundle {
   BundleProblem problem;
-  std::vector<KeyframeId> keyframes;  ///< one a pose; the free ones first
-  std::vector<PointId> points;        ///< one a point
+  std::vector<KeyframeId> keyframes;  ///< one per pose; the free ones first
+  std::vector<PointId> points;        ///< one per point
   std::size_t free_keyframes = 0;
 };
 

@@ -29,7 +29,7 @@ struct GuidedMatchingOptions {
 
 /// For each prediction the nearest descriptor among the keypoints of `frame` within the radius.
 /// A keypoint goes to the prediction with the smallest distance. Match::a is the index of the
-/// prediction, Match::b the keypoint; by rising a. `blocked` (empty or one a keypoint) marks
+/// prediction, Match::b the keypoint; by rising a. `blocked` (empty or one per keypoint) marks
 /// keypoints that may not be used.
 std::vector<Match> match_guided(const std::vector<PixelPrediction>& predictions,
                                 const cv::Mat& point_descriptors, const Frame& frame,

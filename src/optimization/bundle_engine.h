@@ -15,7 +15,7 @@ namespace dxslam {
 
 /// The unknowns of a bundle problem.
 struct BundleState {
-  std::vector<SE3> camera_from_world;   ///< one a pose
+  std::vector<SE3> camera_from_world;   ///< one per pose
   std::vector<Eigen::Vector3d> points;  ///< in world
 };
 
@@ -25,7 +25,7 @@ struct BundleStage {
   const BundleProblem* problem = nullptr;  ///< observations only; poses and points are in the state
   const BundleOptions* options = nullptr;
   std::vector<char> active;  ///< one an observation
-  std::vector<char> held;    ///< one a pose
+  std::vector<char> held;    ///< one per pose
   bool robust = true;        ///< Huber kernel whose width is the gate of the observation
   int iterations = 0;
   MayGoOn may_go_on;

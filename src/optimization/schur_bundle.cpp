@@ -379,11 +379,11 @@ class SchurSolver {
 
   const BundleStage& stage_;
   BundleState& state_;
-  std::vector<int> slots_;  ///< one a pose: place among the free ones that are seen, or -1
+  std::vector<int> slots_;  ///< one per pose: place among the free ones that are seen, or -1
   std::vector<PoseBlock> poses_;
   std::vector<PointBlock> points_;
   std::vector<Link> links_;       ///< by point
-  std::vector<Matrix63d> cross_;  ///< pose-point blocks of the hessian, one a link
+  std::vector<Matrix63d> cross_;  ///< pose-point blocks of the hessian, one per link
   std::vector<Block63> scaled_;   ///< the same times L^-T of the point
   std::vector<int> link_slots_;   ///< slots of the links
   std::vector<Eigen::Matrix3d> rotations_;

@@ -52,7 +52,7 @@ class GlobalIndex {
 
   int dimension_ = 0;
   std::vector<float> rows_;         // row by row
-  std::vector<std::uint32_t> ids_;  // one a row
+  std::vector<std::uint32_t> ids_;  // one per row
   std::unordered_map<std::uint32_t, std::size_t> row_of_;
 };
 

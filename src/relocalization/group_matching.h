@@ -13,8 +13,8 @@ namespace dxslam {
 /// All map points that a group of keyframes sees, each once, with one or more descriptors.
 struct GroupPoints {
   std::vector<PointId> ids;
-  std::vector<Eigen::Vector3d> positions;  ///< in world, one a point
-  cv::Mat descriptors;                     ///< one row a descriptor
+  std::vector<Eigen::Vector3d> positions;  ///< in world, one per point
+  cv::Mat descriptors;                     ///< one row per descriptor
   std::vector<int> point_of_row;           ///< index into ids
 };
 

@@ -25,7 +25,7 @@ std::string narrowed_method(const std::string& wanted, bool words, const Descrip
   return global ? "global-only" : "none";
 }
 
-LoopOptions eased(LoopOptions options, double by) {
+LoopOptions loosened(LoopOptions options, double by) {
   for (double* least : {&options.min_score_orb, &options.min_score_hf, &options.min_score_global}) {
     *least /= by;
   }
@@ -64,7 +64,7 @@ LoopSearch::LoopSearch(const LoopOptions& options, double relaxation, const std:
   }
   method_ = narrowed_method(options.method, vocabulary_.has_value(), traits);
   if (method_ == "none") return;
-  LoopOptions narrowed = eased(options, relaxation);
+  LoopOptions narrowed = loosened(options, relaxation);
   narrowed.method = method_;
   detector_.emplace(narrowed);
 }

@@ -18,7 +18,7 @@ namespace dxslam {
 /// descriptors of a map's keyframes, kept beside the map. Belongs to the thread that owns the map.
 class LoopSearch {
  public:
-  /// `relaxation` eases the thresholds of `options`. Takes what is there: words with a vocabulary
+  /// `relaxation` loosens the thresholds of `options`. Takes what is there: words with a vocabulary
   /// that fits the descriptors, global descriptors where the extractor has them; the method of
   /// `options` is narrowed accordingly. Throws InputError if the vocabulary is given but cannot be
   /// read or does not fit.

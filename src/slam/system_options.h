@@ -42,8 +42,9 @@ struct SystemOptions {
     visit("vocabulary", self.vocabulary, "",
           "file; auto: the one shipped for the features; none: loops by global descriptor alone");
     visit("close_loops", self.close_loops, "", "look for loops and correct the map by them");
-    visit("loop_relaxation", self.loop_relaxation, {1, 10}, "",
-          "factor that eases the thresholds of loop_detection; geometry has the last word anyway");
+    visit(
+        "loop_relaxation", self.loop_relaxation, {1, 10}, "",
+        "factor that loosens the thresholds of loop_detection; geometry has the last word anyway");
     visit("new_map_after", self.new_map_after, {1, 1000000}, "frames",
           "lost in a row, with things to see, before a new map is begun beside the old one (slam)");
     visit("deterministic", self.deterministic, "",

@@ -15,7 +15,7 @@ constexpr int kMaxTaps = 4;  // samples along the long axis of a pixel's footpri
 
 bool is_power_of_two(int value) { return value > 0 && (value & (value - 1)) == 0; }
 
-// One byte a channel to one 16-bit lane a channel, in the order B, R, G.
+// One byte per channel to one 16-bit lane per channel, in the order B, R, G.
 inline std::uint64_t spread(std::uint32_t texel) {
   return (texel & 0xFF00FFU) | (static_cast<std::uint64_t>(texel >> 8 & 0xFFU) << 32);
 }

@@ -22,7 +22,7 @@ struct KnownPoint {
 struct LastFrame {
   FramePtr frame;
   SE3 world_from_camera;
-  std::vector<PointId> points;  ///< one a keypoint; kNoId: none
+  std::vector<PointId> points;  ///< one per keypoint; kNoId: none
 };
 
 /// Known points of a frame: the map point of each keypoint where it has one in the local map,

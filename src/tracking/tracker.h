@@ -31,7 +31,7 @@ class Tracker {
   /// keyframe (the first usable frame always does).
   TrackedFrame track(const FramePtr& frame, std::optional<KeyframeRequest>& request);
   /// Goes on from a pose found by other means (relocalization): `frame` is at `world_from_camera`
-  /// in the world of `local_map` and sees `points`, one a keypoint. Lost still, if the local map
+  /// in the world of `local_map` and sees `points`, one per keypoint. Lost still, if the local map
   /// does not bear it out.
   TrackedFrame resume(const FramePtr& frame, LocalMapPtr local_map, const SE3& world_from_camera,
                       const std::vector<PointId>& points, std::optional<KeyframeRequest>& request);

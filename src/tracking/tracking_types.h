@@ -41,7 +41,7 @@ struct KeyframeRequest {
   FramePtr frame;
   KeyframeId reference = kNoId;  ///< kNoId: this is the first keyframe, at the origin
   SE3 reference_from_camera;
-  std::vector<PointId> points;  ///< one a keypoint; kNoId: none
+  std::vector<PointId> points;  ///< one per keypoint; kNoId: none
   std::vector<PointCount> counts;
 };
 

@@ -9,7 +9,7 @@
 
 namespace dxslam {
 
-// The text format of DBoW2: a line "k L scoring weighting", then one line a node but the root,
+// The text format of DBoW2: a line "k L scoring weighting", then one line per node but the root,
 // "parent is_leaf d0 d1 ... weight", numbered from 1; words are numbered in the order of their
 // lines. Descriptors are bytes if those of the first node are integers of 0 to 255, else floats.
 

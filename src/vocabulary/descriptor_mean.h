@@ -21,7 +21,7 @@ class DescriptorMeans {
   std::size_t size() const { return total_.size(); }
   /// Sum of the weights of the members.
   float total(std::size_t group) const { return total_[group]; }
-  /// One row a group; zeros for a group without members.
+  /// One row per group; zeros for a group without members.
   cv::Mat means() const;
   /// Keeps these groups only, which get the numbers 0, 1, ...; `groups` rises.
   void keep(const std::vector<std::uint32_t>& groups);
@@ -42,7 +42,7 @@ class DescriptorMeans {
   int dimension_;
   std::size_t width_;         // floats, or bits where binary
   std::vector<float> sums_;   // width_ a group
-  std::vector<float> total_;  // one a group
+  std::vector<float> total_;  // one per group
 };
 
 }  // namespace dxslam

@@ -29,9 +29,9 @@ Value get(const std::string& bytes, std::size_t offset) {
   return value;
 }
 
-// A file as the original library writes it, laid out by hand: 4 bytes a descriptor, k = 3. The root
-// has a word (id 0, descriptor 00..) and a block (ff..); that block has the words 0 (f0..: an id
-// that is there already) and 1 (0f..).
+// A file as the original library writes it, laid out by hand: 4 bytes per descriptor, k = 3. The
+// root has a word (id 0, descriptor 00..) and a block (ff..); that block has the words 0 (f0..: an
+// id that is there already) and 1 (0f..).
 std::string foreign_file() {
   const std::size_t block = 8 + 3 * 8 + 3 * 8;
   std::string bytes(128 + 2 * block, '\0');
@@ -45,7 +45,7 @@ std::string foreign_file() {
   put<std::uint64_t>(bytes, 96, 8 + 24);      // children
   put<std::uint64_t>(bytes, 104, 2 * block);  // total
   put<std::int32_t>(bytes, 112, 0);           // CV_8UC1
-  put<std::int32_t>(bytes, 116, 4);           // bytes a descriptor
+  put<std::int32_t>(bytes, 116, 4);           // bytes per descriptor
   put<std::uint32_t>(bytes, 120, 3);          // k
   const auto child = [&](std::size_t b, std::size_t i, std::uint32_t descriptor, std::uint32_t info,
                          float weight) {

@@ -80,7 +80,8 @@ void add_feature_options(CLI::App& command, FeatureArguments& arguments) {
   command.add_option(
       "--features", arguments.features,
       "name of an extractor, or a model manifest (default: hfnet, or orb without it)");
-  command.add_option("--max-keypoints", arguments.options.max_keypoints, "most keypoints an image");
+  command.add_option("--max-keypoints", arguments.options.max_keypoints,
+                     "most keypoints per image");
   command.add_option("--spread", arguments.options.spread,
                      "share of the keypoints given out evenly over the image (0 to 1)");
   command.add_option("--threads", arguments.options.threads, "threads of the network")

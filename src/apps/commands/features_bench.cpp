@@ -123,7 +123,7 @@ void print_table(const std::vector<Contestant>& contestants, std::size_t frames,
   for (const Contestant& c : contestants) {
     if (c.name == kReference) reference = percentile(c.totals, 0.5);
   }
-  fmt::print("{} frames, {} threads, ms an image\n", frames, threads);
+  fmt::print("{} frames, {} threads, ms per image\n", frames, threads);
   fmt::print("{:<28} {:>5} {:>8} {:>8} {:>6}  {}\n", "features", "", "median", "p95", "x ORB",
              "medians of the stages");
   for (const Contestant& c : contestants) {

@@ -96,7 +96,7 @@ void print_info(const StoredMap& stored, const MapStatistics& s, double bytes) {
              header.model_hash.empty() ? "" : ", weights " + header.model_hash.substr(0, 12));
   fmt::print("camera        {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}\n", c.width, c.height,
              c.fx, c.fy, c.cx, c.cy);
-  fmt::print("size          {:.1f} MiB, {:.1f} KiB a keyframe\n", bytes / kMebibyte,
+  fmt::print("size          {:.1f} MiB, {:.1f} KiB per keyframe\n", bytes / kMebibyte,
              bytes / 1024.0 / keyframes);
   fmt::print("keyframes     {}, {} of them with a global descriptor\n", stored.map.keyframe_count(),
              s.globals);

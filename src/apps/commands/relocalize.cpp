@@ -114,7 +114,7 @@ void relocalize(const RelocalizeArguments& arguments) {
   const Relocalizer relocalizer(sequence->camera(), extractor->traits(), options.relocalization);
   const Results results = ask_all(arguments, *sequence, *extractor, map, relocalizer);
   if (!arguments.out.empty()) write_results(arguments.out, results);
-  fmt::print("{} of {} frames found in a map of {} keyframes; {:.1f} ms a frame (median)\n",
+  fmt::print("{} of {} frames found in a map of {} keyframes; {:.1f} ms per frame (median)\n",
              results.poses.size(), results.times.size(), map.stored.map.keyframe_count(),
              summarise(results.times).median);
   if (!arguments.out.empty()) fmt::print("results in {}\n", arguments.out);

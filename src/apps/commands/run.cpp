@@ -93,7 +93,8 @@ void print_outcome(const RunSettings& settings, const RunRecord& record,
   const auto stages = system.times().summaries();
   const auto frame = stages.find("frame");
   fmt::print(
-      "{} of {} frames tracked, {} keyframes, {} points; {:.1f} ms a frame ({}), {:.1f} s in all\n",
+      "{} of {} frames tracked, {} keyframes, {} points; {:.1f} ms per frame ({}), {:.1f} s in "
+      "all\n",
       tracked_frames(system), record.frames_offered, system.map().keyframe_count(),
       system.map().point_count(), frame == stages.end() ? 0.0 : frame->second.median_ms,
       system.extractor().name(), record.wall_s);

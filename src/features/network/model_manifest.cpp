@@ -91,7 +91,7 @@ ModelVariants read_variants(YamlMap map, const fs::path& folder) {
 std::vector<double> read_per_channel(YamlMap& map, const char* name, int channels) {
   std::vector<double> values;
   if (map.take(name, values) && values.size() != static_cast<std::size_t>(channels)) {
-    fail(map, fmt::format("`{}` has {} numbers, expected {}, one a channel", name, values.size(),
+    fail(map, fmt::format("`{}` has {} numbers, expected {}, one per channel", name, values.size(),
                           channels));
   }
   return values;

@@ -37,8 +37,8 @@ struct InputDescription {
   TensorLayout layout = TensorLayout::kNchw;
   bool bgr = false;                  ///< order of three channels, else RGB
   double scale = 1.0;                ///< 8-bit values are multiplied by this,
-  std::vector<double> mean;          ///< then the mean is subtracted, one a channel or empty,
-  std::vector<double> deviation;     ///< and divided by the deviation, one a channel or empty
+  std::vector<double> mean;          ///< then the mean is subtracted, one per channel or empty,
+  std::vector<double> deviation;     ///< and divided by the deviation, one per channel or empty
   bool instance_normalized = false;  ///< each image to zero mean and unit deviation (instead)
   /// Added to that deviation, in grey levels, so that noise on an even image stays small.
   double deviation_floor = 0.0;

@@ -19,7 +19,7 @@ struct DetectorOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit("max_keypoints", self.max_keypoints, {1, 20000}, "keypoints", "most keypoints an image");
+    visit("max_keypoints", self.max_keypoints, {1, 20000}, "keypoints", "most keypoints per image");
     visit("score_threshold", self.score_threshold, {0, 1}, "", "lowest score of a keypoint");
     visit("nms_radius", self.nms_radius, {0, 64}, "pixels",
           "half side of the square in which a keypoint must have the highest score");

@@ -40,7 +40,7 @@ Projection projection_of(const std::string& path, int camera) {
 
 std::vector<double> read_times(const std::string& path) {
   std::vector<double> times;
-  for (const TextRow& row : read_table(path, "one time a line")) {
+  for (const TextRow& row : read_table(path, "one time per line")) {
     const double time = finite_field(path, row, 0, "time");
     if (!times.empty() && time <= times.back()) {
       throw InputError(fmt::format("{}: time {:.6f} after {:.6f}, expected rising times",
