@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "evaluation/statistics.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 
 namespace dxslam::apps {
 namespace {
@@ -154,12 +155,12 @@ void write_loop_results(const LoopSettings& settings, const LoopExperiment& expe
     write(folder / "pr.csv", curve_csv(curves[i].curve));
     write(folder / "pr.svg", draw_loop_curves_svg({curves[i]}, name, note));
     const Json summary = summary_of(settings, experiment, truth, run, curves[i].curve, name);
-    write(folder / "summary.json", summary.dump(2) + "\n");
+    write(folder / "summary.json", to_json_text(summary));
     all.push_back(summary);
   }
   if (!several) return;
   write(fs::path(settings.out) / "pr.svg", draw_loop_curves_svg(curves, name, note));
-  write(fs::path(settings.out) / "summary.json", all.dump(2) + "\n");
+  write(fs::path(settings.out) / "summary.json", to_json_text(all));
 }
 
 }  // namespace dxslam::apps

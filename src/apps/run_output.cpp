@@ -18,6 +18,7 @@
 #include "io/formats/ply_file.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 
 namespace dxslam::apps {
 namespace {
@@ -219,7 +220,7 @@ void write_results(const std::string& folder, const RunSettings& settings, const
   }
   write_map(dir / "map.ply", system.map());
   const Json summary = summarise(settings, record, options, sequence, system);
-  write_file_atomically(dir / "summary.json", summary.dump(2) + "\n");
+  write_file_atomically(dir / "summary.json", to_json_text(summary));
   write_file_atomically(dir / "trajectory.svg", draw_result(trajectory, sequence));
 }
 

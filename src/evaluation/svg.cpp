@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "io/primitives/utf8.h"
+
 namespace dxslam {
 
 std::string svg_begin(double width, double height) {
@@ -25,7 +27,7 @@ std::string svg_text(double x, double y, const std::string& text, const std::str
 
 std::string svg_escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : valid_utf8(text)) {
     if (c == '<') {
       out += "&lt;";
     } else if (c == '>') {

@@ -15,7 +15,8 @@ std::string svg_begin(double width, double height);
 /// Text whose baseline begins at (x, y); `attributes` e.g. class="label". Not escaped.
 std::string svg_text(double x, double y, const std::string& text, const std::string& attributes);
 
-/// `text` without what XML takes for markup; control characters become blanks.
+/// `text` without what XML takes for markup; control characters become blanks, bytes that are not
+/// UTF-8 become U+FFFD.
 std::string svg_escaped(const std::string& text);
 
 /// A round dot with a white rim, 5.5 px in radius.

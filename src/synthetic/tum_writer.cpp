@@ -15,6 +15,7 @@
 #include "io/calibration/calibration.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 #include "synthetic/parallel.h"
 
 namespace dxslam {
@@ -122,7 +123,7 @@ std::string describe_scene(const SyntheticSequence& sequence) {
   scene["path_length_m"] = sequence.path_length();
   scene["surfaces"] = sequence.world().surfaces.size();
   scene["things"] = sequence.layout().placements.size();
-  return scene.dump(2) + "\n";
+  return to_json_text(scene);
 }
 
 bool write_tum_sequence(const SyntheticSequence& sequence, const std::string& folder,

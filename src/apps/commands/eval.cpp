@@ -16,6 +16,7 @@
 #include "evaluation/trajectory_svg.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 #include "io/recordings/sequence_reader.h"
 
 namespace dxslam::apps {
@@ -49,7 +50,7 @@ void print_row(const std::string& label, const ErrorStatistics& s) {
 }
 
 void write_json(const std::string& path, const nlohmann::ordered_json& report) {
-  if (!path.empty()) write_file_atomically(path, report.dump(2) + "\n");
+  if (!path.empty()) write_file_atomically(path, to_json_text(report));
 }
 
 void evaluate_ate_command(const EvalArguments& arguments) {

@@ -18,6 +18,7 @@
 #include "evaluation/openloris.h"
 #include "evaluation/openloris_svg.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 
 namespace dxslam::apps {
 namespace {
@@ -213,7 +214,7 @@ void run(const Arguments& arguments) {
   }
   if (!arguments.json.empty()) {
     const Json all = {{"metric", "openloris"}, {"results", std::move(results)}};
-    write_file_atomically(arguments.json, all.dump(2) + "\n");
+    write_file_atomically(arguments.json, to_json_text(all));
   }
   if (arguments.plot.empty()) return;
   const std::string subtitle =

@@ -13,6 +13,7 @@
 #include "features/extractor_factory.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 #include "io/recordings/sequence_reader.h"
 #include "slam/system.h"
 #include "synthetic/low_light.h"
@@ -117,7 +118,7 @@ void write_lifelong(const LifelongSettings& settings, const System& system,
   }
   write_openloris_result(fs::path(settings.out) / fmt::format("dxslam_{}.txt", settings.scene),
                          result);
-  write_file_atomically(fs::path(settings.out) / "lifelong.json", table.dump(2) + "\n");
+  write_file_atomically(fs::path(settings.out) / "lifelong.json", to_json_text(table));
 }
 
 int run(const LifelongSettings& settings) {

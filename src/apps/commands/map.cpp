@@ -11,6 +11,7 @@
 #include "apps/map_weld.h"
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 #include "map_files/map_export.h"
 #include "map_files/map_file.h"
 #include "map_files/map_merge.h"
@@ -120,7 +121,7 @@ void info_command(const MapArguments& arguments) {
                static_cast<double>(s.size) / kMebibyte);
   }
   if (arguments.json.empty()) return;
-  write_file_atomically(arguments.json, describe_map(path, stored, statistics).dump(2) + "\n");
+  write_file_atomically(arguments.json, to_json_text(describe_map(path, stored, statistics)));
 }
 
 void check_command(const MapArguments& arguments) {
