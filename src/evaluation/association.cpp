@@ -14,7 +14,6 @@ namespace dxslam {
 namespace {
 
 void check(const Trajectory& trajectory) {
-  require(!trajectory.empty(), "a trajectory to evaluate must hold a pose");
   const bool rising =
       std::is_sorted(trajectory.begin(), trajectory.end(),
                      [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
@@ -38,6 +37,7 @@ std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estim
                                 double max_difference) {
   check(truth);
   check(estimate);
+  if (truth.empty() || estimate.empty()) return {};
   const bool estimate_is_longer = estimate.size() > truth.size();
   const Trajectory& shorter = estimate_is_longer ? truth : estimate;
   const Trajectory& longer = estimate_is_longer ? estimate : truth;
@@ -52,6 +52,9 @@ std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estim
 
 std::vector<PosePair> associate_or_throw(const Trajectory& truth, const Trajectory& estimate,
                                          double max_difference) {
+  for (const auto& [trajectory, name] : {std::pair{&truth, "truth"}, {&estimate, "estimate"}}) {
+    if (trajectory->empty()) throw InputError(fmt::format("the {} holds no pose", name));
+  }
   std::vector<PosePair> pairs = associate(truth, estimate, max_difference);
   if (!pairs.empty()) return pairs;
   throw InputError(

@@ -21,7 +21,7 @@ struct PosePair {
 std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estimate,
                                 double max_difference);
 
-/// The same, but throws InputError, with the two time spans, if none match.
+/// The same, but throws InputError, with the two time spans, if none match or one holds no pose.
 std::vector<PosePair> associate_or_throw(const Trajectory& truth, const Trajectory& estimate,
                                          double max_difference);
 

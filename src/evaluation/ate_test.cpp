@@ -56,7 +56,9 @@ TEST(Associate, RefusesWhatDoesNotMatch) {
     EXPECT_THAT(e.what(), testing::HasSubstr("0.000 to 0.200"));
     EXPECT_THAT(e.what(), testing::HasSubstr("100.000"));
   }
-  EXPECT_THROW(associate({}, late, 0.01), ContractError);
+  EXPECT_TRUE(associate({}, late, 0.01).empty());
+  EXPECT_THROW(associate_or_throw({}, late, 0.01), InputError);
+  EXPECT_THROW(associate_or_throw(late, {}, 0.01), InputError);
   EXPECT_THROW(associate({{1, {}}, {0, {}}}, late, 0.01), ContractError);
 }
 

@@ -25,6 +25,7 @@ constexpr double kRight = 24.0;
 constexpr double kBottom = 60.0;
 constexpr double kPadding = 24.0;   // between the outermost poses and the frame
 constexpr double kGridStep = 90.0;  // wanted distance of grid lines
+constexpr int kMostLines = 100;     // far from the origin, k + 1 may be k
 constexpr double kLeastStep = 0.4;  // closer points are left out of a line
 constexpr const char* kTruthColor = "#9aa1ab";
 constexpr const char* kEstimateColor = "#1763c6";
@@ -49,6 +50,7 @@ struct View {
 };
 
 View fit_view(const Trajectory& estimate, const Trajectory& truth) {
+  if (estimate.empty() && truth.empty()) return fit_view({StampedPose()}, {});  // around the origin
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::max());
   Eigen::Vector3d high = -low;
   for (const Trajectory* trajectory : {&estimate, &truth}) {
@@ -89,15 +91,18 @@ std::string draw_grid(const View& view) {
   const double bottom = kTop + view.height;
   constexpr const char* kLine = "stroke=\"#e3e7ec\" stroke-width=\"1\"";
   const auto first = [step](double metres) { return std::ceil(metres / step - 1e-9); };
-  for (double k = first(view.x0); view.px(k * step) <= right + 0.01; ++k) {
+  for (int i = 0; i < kMostLines; ++i) {
+    const double k = first(view.x0) + i;
     const double x = view.px(k * step);
+    if (!(x <= right + 0.01)) break;
     out += fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" {3}/>\n", x, kTop, bottom, kLine);
     out += svg_text(x, bottom + 18, fmt::format("{:.{}f}", k * step + 0.0, digits),
                     "class=\"tick\" text-anchor=\"middle\"");
   }
-  for (double k = first(view.y1 - view.height / view.scale); view.py(k * step) >= kTop - 0.01;
-       ++k) {
+  for (int i = 0; i < kMostLines; ++i) {
+    const double k = first(view.y1 - view.height / view.scale) + i;
     const double y = view.py(k * step);
+    if (!(y >= kTop - 0.01)) break;
     out += fmt::format("<path d=\"M{0:.1f} {1:.1f}H{2:.1f}\" {3}/>\n", kLeft, y, right, kLine);
     out += svg_text(kLeft - 8, y + 4, fmt::format("{:.{}f}", k * step + 0.0, digits),
                     "class=\"tick\" text-anchor=\"end\"");
@@ -179,7 +184,6 @@ std::string draw_legend(const View& view, bool with_truth) {
 
 std::string draw_trajectory_svg(const Trajectory& estimate, const Trajectory& truth,
                                 const std::string& title, const std::string& subtitle) {
-  require(!estimate.empty(), "there is no pose to draw");
   const View view = fit_view(estimate, truth);
   const double width = kLeft + view.width + kRight;
   const double height = kTop + view.height + kBottom;
@@ -188,11 +192,16 @@ std::string draw_trajectory_svg(const Trajectory& estimate, const Trajectory& tr
   svg += svg_text(kLeft, 56, svg_escaped(subtitle), "class=\"sub\"");
   svg += draw_grid(view);
   if (!truth.empty()) svg += draw_line(view, truth, kTruthColor, 4.0);
-  svg += draw_line(view, estimate, kEstimateColor, 2.0);
-  const Eigen::Vector2d start = view.at(estimate.front());
-  const Eigen::Vector2d end = view.at(estimate.back());
-  svg += svg_dot(start.x(), start.y(), kStartColor);
-  svg += svg_dot(end.x(), end.y(), kEndColor);
+  if (estimate.empty()) {
+    svg += svg_text(kLeft + 0.5 * view.width, kTop + 24, "no pose",
+                    "class=\"label halo\" text-anchor=\"middle\"");
+  } else {
+    svg += draw_line(view, estimate, kEstimateColor, 2.0);
+    const Eigen::Vector2d start = view.at(estimate.front());
+    const Eigen::Vector2d end = view.at(estimate.back());
+    svg += svg_dot(start.x(), start.y(), kStartColor);
+    svg += svg_dot(end.x(), end.y(), kEndColor);
+  }
   svg += draw_scale_bar(view);
   svg += draw_legend(view, !truth.empty());
   return svg + "</svg>\n";

@@ -12,7 +12,8 @@ namespace dxslam {
 /// they extend farthest, at equal scale, with grid, scale bar, start and end marks and a legend.
 /// `truth` may be empty; where given, the estimate has to be aligned to it. A line is interrupted
 /// where its stamps leave out more than ten median steps and half a second (tracking lost).
-/// Throws ContractError for an empty estimate or poses that are not finite.
+/// An empty estimate gives a picture that says so. Throws ContractError for poses that are not
+/// finite.
 std::string draw_trajectory_svg(const Trajectory& estimate, const Trajectory& truth,
                                 const std::string& title, const std::string& subtitle = "");
 
