@@ -20,6 +20,15 @@ struct SkippedFrame {
   std::string reason;
 };
 
+/// What is known of a recording before it is read. Programs show it: a wrong calibration or depth
+/// factor makes every result wrong, and nothing else would tell.
+struct RecordingFacts {
+  std::string calibration_source;  ///< the file or preset that the camera is from
+  bool has_depth = false;          ///< some frame has a depth image
+  double median_depth = 0.0;       ///< metres, of the readings in the first images; 0: none there
+  double depth_share = 0.0;        ///< of the pixels of the first images, those with a reading
+};
+
 /// A recording: images in time order, with calibration and, where known, the true trajectory.
 /// Implementations read lazily; one thread at a time may call a sequence.
 class RgbdSequence {
@@ -27,6 +36,7 @@ class RgbdSequence {
   virtual ~RgbdSequence() = default;
   virtual const std::string& name() const = 0;
   virtual const Camera& camera() const = 0;
+  virtual const RecordingFacts& facts() const = 0;
   /// Number of frames listed; some may turn out to be unreadable.
   virtual std::size_t size() const = 0;
   virtual double stamp(std::size_t index) const = 0;

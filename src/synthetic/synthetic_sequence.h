@@ -28,6 +28,8 @@ class SyntheticSequence : public RgbdSequence {
 
   const std::string& name() const override { return name_; }
   const Camera& camera() const override { return camera_; }
+  /// Without the depths, which nobody has drawn yet.
+  const RecordingFacts& facts() const override { return facts_; }
   std::size_t size() const override { return ground_truth_.size(); }
   double stamp(std::size_t index) const override;
   std::optional<RgbdImage> read(std::size_t index) override;
@@ -52,6 +54,7 @@ class SyntheticSequence : public RgbdSequence {
   SyntheticOptions options_;
   std::string name_;
   Camera camera_;
+  RecordingFacts facts_{"the synthetic camera", true, 0.0, 0.0};
   Layout layout_;
   World world_;
   std::optional<CameraPath> path_;

@@ -42,6 +42,8 @@ TEST(FolderReader, ReadsImagesWithoutDepthOrPoses) {
   const auto image = sequence->read(0);
   ASSERT_TRUE(image.has_value());
   EXPECT_TRUE(image->depth.empty());
+  EXPECT_FALSE(sequence->facts().has_depth);
+  expect_input_error([&] { require_depth(*sequence); }, {"no depth images"});
 }
 
 TEST(FolderReader, SkipsAFrameWithoutItsDepth) {

@@ -21,10 +21,15 @@ constexpr double kEnoughReadings = 0.01;  // share of pixels below which a media
 class ListedSequence : public RgbdSequence {
  public:
   explicit ListedSequence(SequenceListing listing)
-      : listing_(std::move(listing)), skipped_(listing_.skipped) {}
+      : listing_(std::move(listing)), skipped_(listing_.skipped) {
+    facts_.calibration_source = listing_.calibration_source;
+    facts_.has_depth = std::any_of(listing_.frames.begin(), listing_.frames.end(),
+                                   [](const ListedFrame& frame) { return !frame.depth.empty(); });
+  }
 
   const std::string& name() const override { return listing_.name; }
   const Camera& camera() const override { return listing_.camera; }
+  const RecordingFacts& facts() const override { return facts_; }
   std::size_t size() const override { return listing_.frames.size(); }
   double stamp(std::size_t index) const override {
     require(index < size(), "frame index beyond the sequence");
@@ -44,7 +49,7 @@ class ListedSequence : public RgbdSequence {
   }
 
   // Throws the first frame's error if no probed frame can be read.
-  void probe() const {
+  void probe() {
     std::vector<float> depths;
     std::size_t pixels = 0;
     std::size_t good = 0;
@@ -60,7 +65,12 @@ class ListedSequence : public RgbdSequence {
       }
     }
     if (good == 0) throw InputError(first_error);
-    check_scale(depths, pixels);
+    if (depths.empty()) return;
+    facts_.depth_share = static_cast<double>(depths.size()) / static_cast<double>(pixels);
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    facts_.median_depth = *middle;
+    check_scale();
   }
 
  private:
@@ -95,22 +105,18 @@ class ListedSequence : public RgbdSequence {
     }
   }
 
-  void check_scale(std::vector<float>& depths, std::size_t pixels) const {
-    if (depths.empty() ||
-        static_cast<double>(depths.size()) < kEnoughReadings * static_cast<double>(pixels)) {
-      return;
-    }
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    if (*middle >= kNearestScene && *middle <= kFarthestScene) return;
+  void check_scale() const {
+    if (facts_.depth_share < kEnoughReadings) return;
+    if (facts_.median_depth >= kNearestScene && facts_.median_depth <= kFarthestScene) return;
     throw InputError(fmt::format(
         "{}: median depth of the first images is {:.3g} m with depth_factor {} of {}, expected {} "
         "to {} m: the factor must be the raw value of one metre",
-        listing_.name, *middle, listing_.camera.depth_factor, listing_.calibration_source,
-        kNearestScene, kFarthestScene));
+        listing_.name, facts_.median_depth, listing_.camera.depth_factor,
+        listing_.calibration_source, kNearestScene, kFarthestScene));
   }
 
   SequenceListing listing_;
+  RecordingFacts facts_;
   std::vector<SkippedFrame> skipped_;
 };
 

@@ -107,6 +107,13 @@ std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
   }
 }
 
+void require_depth(const RgbdSequence& sequence) {
+  if (sequence.facts().has_depth) return;
+  throw InputError(fmt::format(
+      "{}: the recording has no depth images, expected one beside each colour image (RGB-D)",
+      sequence.name()));
+}
+
 Trajectory load_ground_truth(const std::string& file_or_folder) {
   std::error_code error;
   if (!fs::is_directory(file_or_folder, error)) return read_trajectory(file_or_folder);

@@ -54,6 +54,9 @@ const std::vector<std::string>& sequence_formats();
 std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
                                             const SequenceOptions& options = {});
 
+/// Throws InputError for a recording in which no frame has a depth image: for whatever needs depth.
+void require_depth(const RgbdSequence& sequence);
+
 /// The true trajectory: of a file in TUM format or, for a folder, of the recording in it.
 /// Throws InputError if there is none.
 Trajectory load_ground_truth(const std::string& file_or_folder);

@@ -47,6 +47,21 @@ TEST(TumReader, ReadsFramesStampsDepthAndTruth) {
   EXPECT_THROW(sequence->read(5), ContractError);
 }
 
+TEST(TumReader, TellsCalibrationAndDepth) {
+  const TestFolder folder;
+  write_sequence(folder);
+  const cv::Mat half = test_depth(2000);
+  half.rowRange(0, half.rows / 2) = 0;
+  folder.write("depth/1.png", half);
+  const auto sequence = open_sequence(folder.path());
+  const RecordingFacts& facts = sequence->facts();
+  EXPECT_THAT(facts.calibration_source, testing::HasSubstr("calibration.yaml"));
+  EXPECT_TRUE(facts.has_depth);
+  EXPECT_FLOAT_EQ(facts.median_depth, 2.0F);
+  EXPECT_NEAR(facts.depth_share, 5.0 / 6.0, 1e-9);
+  require_depth(*sequence);
+}
+
 TEST(TumReader, LeavesOutAndReportsFramesWithoutDepthNearby) {
   const TestFolder folder;
   write_sequence(folder);
