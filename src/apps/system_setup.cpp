@@ -2,7 +2,6 @@
 // Copyright 2026 The dxslam authors
 #include "apps/system_setup.h"
 
-#include "core/options.h"
 #include "features/extractor_factory.h"
 #include "io/formats/options_yaml.h"
 
@@ -16,7 +15,7 @@ SystemOptions load_system_options(const SystemArguments& arguments) {
   if (!arguments.mode.empty()) options.mode = arguments.mode;
   options.deterministic = options.deterministic || arguments.deterministic;
   options.extractor.deterministic = options.extractor.deterministic || options.deterministic;
-  validate_options("", options);
+  validate_system_options(options);
   return options;
 }
 

@@ -2,22 +2,15 @@
 // Copyright 2026 The dxslam authors
 #include "slam/system.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/error.h"
-#include "core/options.h"
 
 namespace dxslam {
 namespace {
 
 SystemOptions checked(const SystemOptions& options) {
-  validate_options("", options);
-  if (options.mode != "slam" && options.mode != "localization") {
-    throw InputError(
-        fmt::format("option mode is `{}`, expected slam or localization", options.mode));
-  }
+  validate_system_options(options);
   return options;
 }
 

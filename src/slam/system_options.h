@@ -63,4 +63,7 @@ struct SystemOptions {
   }
 };
 
+/// Throws InputError for what no system can be made with: numbers out of range, unknown names.
+void validate_system_options(const SystemOptions& options);
+
 }  // namespace dxslam

@@ -111,6 +111,11 @@ TEST(System, LocalizationNeedsAMap) {
   EXPECT_THROW(feed(*system, 0, 1), InputError);
   options.mode = "both";
   EXPECT_THROW(make_system(options), InputError);
+  for (const char* method : {"hf-bow-global+geometry", "nonsense"}) {
+    options = SystemOptions();
+    options.loop_detection.method = method;
+    EXPECT_THROW(make_system(options), InputError) << method;
+  }
 }
 
 TEST(System, BeginsANewMapWhenItCannotFindItselfAndJoinsThemLater) {
