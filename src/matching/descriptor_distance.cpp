@@ -29,8 +29,8 @@ std::vector<float> pack_panels(const cv::Mat& b) {
   return packed;
 }
 
-DXSLAM_SIMD void dot_block(const float* const* rows, int row_count, const float* panel, int dim,
-                           float* out, int out_stride) {
+DXSLAM_INLINE_KERNEL void dot_block(const float* const* rows, int row_count, const float* panel,
+                                    int dim, float* out, int out_stride) {
   FloatLanes sum[kRows] = {};
   for (int d = 0; d < dim; ++d) {
     const FloatLanes column =
@@ -42,19 +42,16 @@ DXSLAM_SIMD void dot_block(const float* const* rows, int row_count, const float*
   }
 }
 
-DXSLAM_SIMD int differing_bits(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
-  return count_differing_bits(a, b, bytes);
-}
-
-DXSLAM_SIMD void binary_row_similarities(const std::uint8_t* a, const std::uint8_t* b, int b_rows,
-                                         std::size_t b_step, std::size_t bytes, float* similarity) {
+DXSLAM_INLINE_KERNEL void binary_row_similarities(const std::uint8_t* a, const std::uint8_t* b,
+                                                  int b_rows, std::size_t b_step, std::size_t bytes,
+                                                  float* similarity) {
   for (int j = 0; j < b_rows; ++j) {
     const std::uint8_t* row = b + static_cast<std::size_t>(j) * b_step;
     similarity[j] = static_cast<float>(-count_differing_bits(a, row, bytes));
   }
 }
 
-DXSLAM_SIMD float dot(const float* a, const float* b, int dim) {
+DXSLAM_INLINE_KERNEL float dot(const float* a, const float* b, int dim) {
   FloatLanes sum = {};
   int d = 0;
   for (; d + kSimdLanes <= dim; d += kSimdLanes) {
@@ -75,10 +72,11 @@ float distance_of_similarity(float similarity, bool binary) {
 
 float descriptor_distance(const cv::Mat& a, int row_a, const cv::Mat& b, int row_b) {
   if (a.depth() == CV_32F) {
-    return distance_of_similarity(dot(a.ptr<float>(row_a), b.ptr<float>(row_b), a.cols), false);
+    return distance_of_similarity(
+        simd_kernel<dot>()(a.ptr<float>(row_a), b.ptr<float>(row_b), a.cols), false);
   }
-  return static_cast<float>(
-      differing_bits(a.ptr(row_a), b.ptr(row_b), static_cast<std::size_t>(a.cols)));
+  return static_cast<float>(simd_kernel<count_differing_bits>()(a.ptr(row_a), b.ptr(row_b),
+                                                                static_cast<std::size_t>(a.cols)));
 }
 
 DescriptorSimilarities::DescriptorSimilarities(const cv::Mat& a, const cv::Mat& b) : a_(a), b_(b) {
@@ -90,13 +88,14 @@ DescriptorSimilarities::DescriptorSimilarities(const cv::Mat& a, const cv::Mat& 
 void DescriptorSimilarities::of_rows(int first, int count, float* similarity) const {
   if (a_.depth() != CV_32F) {
     for (int i = 0; i < count; ++i) {
-      binary_row_similarities(a_.ptr(first + i), b_.ptr(), b_.rows, b_.step[0],
-                              static_cast<std::size_t>(a_.cols),
-                              similarity + static_cast<std::size_t>(i) * b_.rows);
+      simd_kernel<binary_row_similarities>()(a_.ptr(first + i), b_.ptr(), b_.rows, b_.step[0],
+                                             static_cast<std::size_t>(a_.cols),
+                                             similarity + static_cast<std::size_t>(i) * b_.rows);
     }
     return;
   }
   float block[kRows * kSimdLanes];
+  const auto dot_all = simd_kernel<dot_block>();
   for (int i = 0; i < count; i += kRows) {
     const int row_count = std::min(kRows, count - i);
     const float* rows[kRows];
@@ -104,7 +103,7 @@ void DescriptorSimilarities::of_rows(int first, int count, float* similarity) co
     for (int j = 0; j < b_.rows; j += kSimdLanes) {
       const float* panel = panels_.data() + static_cast<std::size_t>(j) * b_.cols;
       const int columns = std::min(kSimdLanes, b_.rows - j);
-      dot_block(rows, row_count, panel, a_.cols, block, kSimdLanes);
+      dot_all(rows, row_count, panel, a_.cols, block, kSimdLanes);
       for (int r = 0; r < row_count; ++r) {
         std::copy_n(block + static_cast<std::ptrdiff_t>(r) * kSimdLanes, columns,
                     similarity + static_cast<std::size_t>(i + r) * b_.rows + j);

@@ -33,7 +33,8 @@ struct Nearest {
 };
 
 /// The two largest of a row; what is the largest of its column so far is noted there.
-DXSLAM_SIMD Nearest scan_row(const float* row, int n, int i, float* column_best, int* column_row) {
+DXSLAM_INLINE_KERNEL Nearest scan_row(const float* row, int n, int i, float* column_best,
+                                      int* column_row) {
   FloatLanes best = FloatLanes{} + kNone;
   FloatLanes second = best;
   IntLanes index = {};
@@ -77,13 +78,14 @@ Table nearest_of_all(const cv::Mat& a, const cv::Mat& b) {
   Table table{std::vector<Nearest>(static_cast<std::size_t>(a.rows)), std::vector<int>(columns)};
   std::vector<float> column_best(columns, kNone);
   std::vector<float> rows(kRowsAtOnce * columns);
+  const auto scan = simd_kernel<scan_row>();
   for (int first = 0; first < a.rows; first += kRowsAtOnce) {
     const int end = std::min(first + kRowsAtOnce, a.rows);
     similarities.of_rows(first, end - first, rows.data());
     for (int i = first; i < end; ++i) {
       const float* row = rows.data() + static_cast<std::size_t>(i - first) * columns;
       table.of_row[static_cast<std::size_t>(i)] =
-          scan_row(row, b.rows, i, column_best.data(), table.column_row.data());
+          scan(row, b.rows, i, column_best.data(), table.column_row.data());
     }
   }
   return table;

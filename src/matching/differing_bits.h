@@ -6,12 +6,13 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/simd.h"
+
 namespace dxslam {
 
-/// Hamming distance of two binary descriptors. Inlined into each clone of its callers, so that it
-/// uses their instruction set (core/simd.h).
-[[gnu::always_inline]] inline int count_differing_bits(const std::uint8_t* a, const std::uint8_t* b,
-                                                       std::size_t bytes) {
+/// Hamming distance of two binary descriptors: a kernel, or a part of one.
+DXSLAM_INLINE_KERNEL int count_differing_bits(const std::uint8_t* a, const std::uint8_t* b,
+                                              std::size_t bytes) {
   int bits = 0;
   std::size_t k = 0;
   for (; k + 8 <= bytes; k += 8) {

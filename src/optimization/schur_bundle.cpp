@@ -30,8 +30,7 @@ struct Block66 {
 inline std::size_t triangle(std::size_t a, std::size_t b) { return a * (a + 1) / 2 + b; }
 
 /// target -= s t^T.
-[[gnu::always_inline]] inline void subtract_outer(const Block63& s, const Block63& t,
-                                                  Block66& target) {
+DXSLAM_INLINE_KERNEL void subtract_outer(const Block63& s, const Block63& t, Block66& target) {
   for (int c = 0; c < 6; ++c) {
     target.column[c] -=
         s.column[0] * t.column[0][c] + s.column[1] * t.column[1][c] + s.column[2] * t.column[2][c];
@@ -40,7 +39,8 @@ inline std::size_t triangle(std::size_t a, std::size_t b) { return a * (a + 1) /
 
 /// Fill-in between all poses that see one point: for each pair of links the block of the lower
 /// triangle. Links without a slot (negative) are of poses that are held.
-DXSLAM_SIMD void couple(const int* slots, const Block63* scaled, int count, Block66* reduced) {
+DXSLAM_INLINE_KERNEL void couple(const int* slots, const Block63* scaled, int count,
+                                 Block66* reduced) {
   for (int i = 0; i < count; ++i) {
     if (slots[i] < 0) continue;
     const auto a = static_cast<std::size_t>(slots[i]);
@@ -317,8 +317,8 @@ class SchurSolver {
       Block63& scaled = scaled_[static_cast<std::size_t>(i)];
       for (int c = 0; c < 3; ++c) std::copy_n(s.col(c).data(), 6, &scaled.column[c][0]);
     }
-    couple(link_slots_.data() + block.first, scaled_.data() + block.first, block.last - block.first,
-           blocks_.data());
+    simd_kernel<couple>()(link_slots_.data() + block.first, scaled_.data() + block.first,
+                          block.last - block.first, blocks_.data());
   }
 
   bool solve_for_poses() {

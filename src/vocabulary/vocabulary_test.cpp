@@ -9,6 +9,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/test_simd.h"
 #include "vocabulary/test_vocabularies.h"
 
 namespace dxslam {
@@ -61,12 +62,15 @@ TEST_P(QuantisationTest, FindsTheWordsOfAScalarDescent) {
   const VocabularyTree tree = test_tree(random_descriptors(binary, 700, dimension, 1), 9);
   const Vocabulary vocabulary = Vocabulary::from_tree(tree);
   const cv::Mat queries = random_descriptors(binary, 500, dimension, 2);
-  const std::vector<WordId> words = vocabulary.words(queries);
-  ASSERT_EQ(words.size(), 500U);
-  for (int i = 0; i < queries.rows; ++i) {
-    std::vector<WordId> expected;
-    descend(tree, 0, queries, i, expected);
-    EXPECT_THAT(expected, testing::Contains(words[static_cast<std::size_t>(i)])) << "row " << i;
+  for (const SimdLevel level : testing_support::simd_levels()) {
+    set_simd_level(level);
+    const std::vector<WordId> words = vocabulary.words(queries);
+    ASSERT_EQ(words.size(), 500U);
+    for (int i = 0; i < queries.rows; ++i) {
+      std::vector<WordId> expected;
+      descend(tree, 0, queries, i, expected);
+      EXPECT_THAT(expected, testing::Contains(words[static_cast<std::size_t>(i)])) << "row " << i;
+    }
   }
 }
 

@@ -8,8 +8,6 @@
 #include "core/simd.h"
 #include "matching/differing_bits.h"
 
-#define DXSLAM_INLINE [[gnu::always_inline]] inline
-
 namespace dxslam {
 namespace {
 
@@ -18,8 +16,8 @@ constexpr std::size_t kLine = 64;  // bytes of a cache line
 
 struct FloatDistance {
   using Value = float;
-  DXSLAM_INLINE static float of(const std::uint8_t* a_bytes, const std::uint8_t* b_bytes,
-                                std::size_t dimension) {
+  DXSLAM_INLINE_KERNEL static float of(const std::uint8_t* a_bytes, const std::uint8_t* b_bytes,
+                                       std::size_t dimension) {
     const auto* a = reinterpret_cast<const float*>(a_bytes);
     const auto* b = reinterpret_cast<const float*>(b_bytes);
     FloatLanes sum = {};
@@ -42,14 +40,15 @@ struct FloatDistance {
 
 struct BitDistance {
   using Value = int;
-  DXSLAM_INLINE static int of(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
+  DXSLAM_INLINE_KERNEL static int of(const std::uint8_t* a, const std::uint8_t* b,
+                                     std::size_t bytes) {
     return count_differing_bits(a, b, bytes);
   }
 };
 
 template <class Distance>
-DXSLAM_INLINE std::uint32_t nearest_child(const FbowImage& image, const std::uint8_t* block,
-                                          const std::uint8_t* descriptor) {
+DXSLAM_INLINE_KERNEL std::uint32_t nearest_child(const FbowImage& image, const std::uint8_t* block,
+                                                 const std::uint8_t* descriptor) {
   const std::size_t dimension = image.layout.dimension();
   const std::uint32_t count = FbowImage::child_count(block);
   const std::uint8_t* candidate = image.descriptor(block, 0);
@@ -65,15 +64,15 @@ DXSLAM_INLINE std::uint32_t nearest_child(const FbowImage& image, const std::uin
   return nearest;
 }
 
-DXSLAM_INLINE void fetch_block(const FbowImage& image, const std::uint8_t* block) {
+DXSLAM_INLINE_KERNEL void fetch_block(const FbowImage& image, const std::uint8_t* block) {
   constexpr std::size_t kMost = 64 * kLine;
   const std::size_t bytes = std::min(image.layout.block_step, kMost);
   for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(block + at);
 }
 
 template <class Distance>
-DXSLAM_INLINE void descend_group(const FbowImage& image, const std::uint8_t* const* rows, int count,
-                                 FbowImage::Child* found) {
+DXSLAM_INLINE_KERNEL void descend_group(const FbowImage& image, const std::uint8_t* const* rows,
+                                        int count, FbowImage::Child* found) {
   const std::uint8_t* block[kGroup];
   for (int r = 0; r < count; ++r) block[r] = image.block(0);
   int left = count;
@@ -93,28 +92,16 @@ DXSLAM_INLINE void descend_group(const FbowImage& image, const std::uint8_t* con
   }
 }
 
-DXSLAM_SIMD void descend_floats(const FbowImage& image, const std::uint8_t* const* rows, int count,
-                                FbowImage::Child* found) {
-  descend_group<FloatDistance>(image, rows, count, found);
-}
-
-DXSLAM_SIMD void descend_bits(const FbowImage& image, const std::uint8_t* const* rows, int count,
-                              FbowImage::Child* found) {
-  descend_group<BitDistance>(image, rows, count, found);
-}
-
 }  // namespace
 
 void search_words(const FbowImage& image, const cv::Mat& descriptors, FbowImage::Child* found) {
+  const auto descend = image.layout.binary ? simd_kernel<descend_group<BitDistance>>()
+                                           : simd_kernel<descend_group<FloatDistance>>();
   for (int i = 0; i < descriptors.rows; i += kGroup) {
     const int count = std::min(kGroup, descriptors.rows - i);
     const std::uint8_t* rows[kGroup];
     for (int r = 0; r < count; ++r) rows[r] = descriptors.ptr(i + r);
-    if (image.layout.binary) {
-      descend_bits(image, rows, count, found + i);
-    } else {
-      descend_floats(image, rows, count, found + i);
-    }
+    descend(image, rows, count, found + i);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/simd.h"
 
 namespace dxslam {
 namespace {
@@ -97,57 +98,8 @@ DXSLAM_INLINE_KERNEL void fill_places(const cv::Mat& grey, int row, int block, A
 }
 
 template <class Value>
-using FillPlaces = void (*)(const cv::Mat&, int, int, Affine, Value*, Value*);
-using SumRow = RowSums (*)(const std::uint8_t*, int);
-
-template <class Value>
-void fill_places_generic(const cv::Mat& grey, int row, int block, Affine map, Value* buffer,
-                         Value* out) {
-  fill_places(grey, row, block, map, buffer, out);
-}
-RowSums sum_row_generic(const std::uint8_t* row, int width) { return sum_row(row, width); }
-
-#ifdef DXSLAM_HAS_X86_SIMD
-template <class Value>
-DXSLAM_TARGET_AVX2 void fill_places_avx2(const cv::Mat& grey, int row, int block, Affine map,
-                                         Value* buffer, Value* out) {
-  fill_places(grey, row, block, map, buffer, out);
-}
-template <class Value>
-DXSLAM_TARGET_AVX512 void fill_places_avx512(const cv::Mat& grey, int row, int block, Affine map,
-                                             Value* buffer, Value* out) {
-  fill_places(grey, row, block, map, buffer, out);
-}
-DXSLAM_TARGET_AVX2 RowSums sum_row_avx2(const std::uint8_t* row, int width) {
-  return sum_row(row, width);
-}
-DXSLAM_TARGET_AVX512 RowSums sum_row_avx512(const std::uint8_t* row, int width) {
-  return sum_row(row, width);
-}
-#endif
-
-template <class Value>
-FillPlaces<Value> choose_fill(SimdLevel level) {
-#ifdef DXSLAM_HAS_X86_SIMD
-  if (level == SimdLevel::kAvx512) return fill_places_avx512<Value>;
-  if (level == SimdLevel::kAvx2) return fill_places_avx2<Value>;
-#endif
-  (void)level;
-  return fill_places_generic<Value>;
-}
-
-SumRow choose_sum(SimdLevel level) {
-#ifdef DXSLAM_HAS_X86_SIMD
-  if (level == SimdLevel::kAvx512) return sum_row_avx512;
-  if (level == SimdLevel::kAvx2) return sum_row_avx2;
-#endif
-  (void)level;
-  return sum_row_generic;
-}
-
-template <class Value>
-void fill(const cv::Mat& grey, int block, Affine map, SimdLevel level, cv::Mat& out) {
-  const FillPlaces<Value> fill_row = choose_fill<Value>(level);
+void fill(const cv::Mat& grey, int block, Affine map, cv::Mat& out) {
+  const auto fill_row = simd_kernel<fill_places<Value>>();
   std::vector<Value> buffer(static_cast<std::size_t>(grey.cols) * block);
   for (int row = 0; row < out.rows; ++row) {
     fill_row(grey, row, block, map, buffer.data(), out.ptr<Value>(row));
@@ -156,9 +108,9 @@ void fill(const cv::Mat& grey, int block, Affine map, SimdLevel level, cv::Mat& 
 
 }  // namespace
 
-PixelStatistics pixel_statistics(const cv::Mat& grey, SimdLevel level) {
+PixelStatistics pixel_statistics(const cv::Mat& grey) {
   require(grey.type() == CV_8UC1 && grey.cols <= 65536, "pixel_statistics wants a grey image");
-  const SumRow sum = choose_sum(level);
+  const auto sum = simd_kernel<sum_row>();
   RowSums total;
   for (int y = 0; y < grey.rows; ++y) {
     const RowSums row = sum(grey.ptr<std::uint8_t>(y), grey.cols);
@@ -172,15 +124,15 @@ PixelStatistics pixel_statistics(const cv::Mat& grey, SimdLevel level) {
 }
 
 void pixels_to_blocks(const cv::Mat& grey, int block, float scale, float offset, int type,
-                      cv::Mat& out, SimdLevel level) {
+                      cv::Mat& out) {
   require(grey.type() == CV_8UC1 && block > 0 && grey.cols % block == 0 && grey.rows % block == 0,
           "pixels_to_blocks wants a grey image of whole blocks");
   require(type == CV_32F || type == CV_8S, "pixels_to_blocks makes CV_32F or CV_8S");
   out.create(grey.rows / block, grey.cols / block, CV_MAKETYPE(type, block * block));
   if (type == CV_32F) {
-    fill<float>(grey, block, {scale, offset}, level, out);
+    fill<float>(grey, block, {scale, offset}, out);
   } else {
-    fill<std::int8_t>(grey, block, {scale, offset}, level, out);
+    fill<std::int8_t>(grey, block, {scale, offset}, out);
   }
 }
 

@@ -9,19 +9,14 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/test_simd.h"
 #include "features/network/test_models.h"
 
 namespace dxslam {
 namespace {
 
+using testing_support::simd_levels;
 using testing_support::test_image;
-
-std::vector<SimdLevel> levels() {
-  std::vector<SimdLevel> result{SimdLevel::kGeneric};
-  if (simd_level() >= SimdLevel::kAvx2) result.push_back(SimdLevel::kAvx2);
-  if (simd_level() >= SimdLevel::kAvx512) result.push_back(SimdLevel::kAvx512);
-  return result;
-}
 
 TEST(PixelBlocks, StatisticsEqualThoseOfOpenCv) {
   for (const cv::Size size : {cv::Size(64, 48), cv::Size(101, 7), cv::Size(640, 480)}) {
@@ -29,8 +24,9 @@ TEST(PixelBlocks, StatisticsEqualThoseOfOpenCv) {
     cv::Scalar mean;
     cv::Scalar deviation;
     cv::meanStdDev(image, mean, deviation);
-    for (const SimdLevel level : levels()) {
-      const PixelStatistics found = pixel_statistics(image, level);
+    for (const SimdLevel level : simd_levels()) {
+      set_simd_level(level);
+      const PixelStatistics found = pixel_statistics(image);
       EXPECT_NEAR(found.mean, mean[0], 1e-9);
       EXPECT_NEAR(found.deviation, deviation[0], 1e-7);
     }
@@ -40,10 +36,11 @@ TEST(PixelBlocks, StatisticsEqualThoseOfOpenCv) {
 
 TEST(PixelBlocks, KeepEachPixelInItsPlaceAndChannel) {
   const cv::Mat image = test_image(96, 60, 2);
-  for (const SimdLevel level : levels()) {
+  for (const SimdLevel level : simd_levels()) {
+    set_simd_level(level);
     for (const int block : {4, 2, 3}) {
       cv::Mat blocks;
-      pixels_to_blocks(image, block, 0.5F, -20.0F, CV_32F, blocks, level);
+      pixels_to_blocks(image, block, 0.5F, -20.0F, CV_32F, blocks);
       ASSERT_EQ(blocks.size(), cv::Size(96 / block, 60 / block));
       ASSERT_EQ(blocks.channels(), block * block);
       for (int y = 0; y < image.rows; ++y) {
@@ -60,9 +57,10 @@ TEST(PixelBlocks, KeepEachPixelInItsPlaceAndChannel) {
 TEST(PixelBlocks, RoundAndSaturateIntegers) {
   cv::Mat image(8, 256, CV_8U);
   for (int x = 0; x < 256; ++x) image.col(x).setTo(x);
-  for (const SimdLevel level : levels()) {
+  for (const SimdLevel level : simd_levels()) {
+    set_simd_level(level);
     cv::Mat blocks;
-    pixels_to_blocks(image, 4, 1.371F, -170.23F, CV_8S, blocks, level);
+    pixels_to_blocks(image, 4, 1.371F, -170.23F, CV_8S, blocks);
     for (int x = 0; x < 256; ++x) {
       const double exact = std::clamp(std::nearbyint(x * 1.371F - 170.23F), -127.0F, 127.0F);
       const int found = blocks.ptr<std::int8_t>(1, x / 4)[4 + x % 4];

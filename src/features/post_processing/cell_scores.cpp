@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/simd.h"
 
 namespace dxslam {
 namespace {
@@ -195,35 +196,9 @@ DXSLAM_INLINE_KERNEL void spread_any_row(const float* logits, int cells, int cel
   }
 }
 
-using SpreadRow = void (*)(const float*, int, int, float*, float*);
-
-void spread_row_generic(const float* logits, int cells, int cell, float* normalizers, float* out) {
-  spread_any_row(logits, cells, cell, normalizers, out);
-}
-
-#ifdef DXSLAM_HAS_X86_SIMD
-DXSLAM_TARGET_AVX2 void spread_row_avx2(const float* logits, int cells, int cell,
-                                        float* normalizers, float* out) {
-  spread_any_row(logits, cells, cell, normalizers, out);
-}
-DXSLAM_TARGET_AVX512 void spread_row_avx512(const float* logits, int cells, int cell,
-                                            float* normalizers, float* out) {
-  spread_any_row(logits, cells, cell, normalizers, out);
-}
-#endif
-
-SpreadRow choose_spread_row(SimdLevel level) {
-#ifdef DXSLAM_HAS_X86_SIMD
-  if (level == SimdLevel::kAvx512) return spread_row_avx512;
-  if (level == SimdLevel::kAvx2) return spread_row_avx2;
-#endif
-  (void)level;
-  return spread_row_generic;
-}
-
 }  // namespace
 
-TensorView CellScores::log_probabilities(const TensorView& logits, SimdLevel level) {
+TensorView CellScores::log_probabilities(const TensorView& logits) {
   require(logits.channel_stride == 1 && logits.channels == cell_ * cell_ + 1 &&
               logits.column_stride == logits.channels,
           "CellScores wants cell * cell + 1 channels side by side");
@@ -231,7 +206,7 @@ TensorView CellScores::log_probabilities(const TensorView& logits, SimdLevel lev
   const int height = logits.height * cell_;
   map_.resize(static_cast<std::size_t>(width) * height);
   normalizers_.resize(static_cast<std::size_t>(logits.width));
-  const SpreadRow spread = choose_spread_row(level);
+  const auto spread = simd_kernel<spread_any_row>();
   for (int row = 0; row < logits.height; ++row) {
     spread(logits.at(row, 0), logits.width, cell_, normalizers_.data(),
            map_.data() + static_cast<std::size_t>(row) * cell_ * width);

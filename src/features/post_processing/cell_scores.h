@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "features/network/tensor_view.h"
-#include "features/simd_level.h"
 
 namespace dxslam {
 
@@ -20,7 +19,7 @@ class CellScores {
 
   /// Log probabilities at full resolution, one channel; valid until the next call. `logits` has
   /// cell * cell + 1 channels side by side (channel_stride 1) and no gaps.
-  TensorView log_probabilities(const TensorView& logits, SimdLevel level = simd_level());
+  TensorView log_probabilities(const TensorView& logits);
 
  private:
   int cell_;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/simd.h"
 
 namespace dxslam {
 namespace {
@@ -130,39 +131,6 @@ DXSLAM_INLINE_KERNEL void find_in_row(const TensorView& scores, float threshold,
   }
 }
 
-using FindInRow = void (*)(const TensorView&, float, const PixelArea&, int, int,
-                           std::vector<std::uint8_t>&, std::vector<Candidate>&);
-
-void find_in_row_generic(const TensorView& scores, float threshold, const PixelArea& area,
-                         int radius, int y, std::vector<std::uint8_t>& marks,
-                         std::vector<Candidate>& candidates) {
-  find_in_row(scores, threshold, area, radius, y, marks, candidates);
-}
-
-#ifdef DXSLAM_HAS_X86_SIMD
-DXSLAM_TARGET_AVX2 void find_in_row_avx2(const TensorView& scores, float threshold,
-                                         const PixelArea& area, int radius, int y,
-                                         std::vector<std::uint8_t>& marks,
-                                         std::vector<Candidate>& candidates) {
-  find_in_row(scores, threshold, area, radius, y, marks, candidates);
-}
-DXSLAM_TARGET_AVX512 void find_in_row_avx512(const TensorView& scores, float threshold,
-                                             const PixelArea& area, int radius, int y,
-                                             std::vector<std::uint8_t>& marks,
-                                             std::vector<Candidate>& candidates) {
-  find_in_row(scores, threshold, area, radius, y, marks, candidates);
-}
-#endif
-
-FindInRow choose_find_in_row(SimdLevel level) {
-#ifdef DXSLAM_HAS_X86_SIMD
-  if (level == SimdLevel::kAvx512) return find_in_row_avx512;
-  if (level == SimdLevel::kAvx2) return find_in_row_avx2;
-#endif
-  (void)level;
-  return find_in_row_generic;
-}
-
 }  // namespace
 
 void find_candidates(const TensorView& scores, float threshold,
@@ -179,13 +147,13 @@ void find_candidates(const TensorView& scores, float threshold,
 }
 
 void find_maxima(const TensorView& scores, float threshold, const PixelArea& area, int radius,
-                 std::vector<Candidate>& candidates, SimdLevel level) {
+                 std::vector<Candidate>& candidates) {
   require(scores.column_stride == 1, "a score map must have rows without gaps");
   require(radius > 0, "find_maxima wants a radius above 0");
   require(area.x_begin > 0 && area.y_begin > 0 && area.x_end < scores.width &&
               area.y_end < scores.height,
           "find_maxima wants an area off the rim of the map");
-  const FindInRow find = choose_find_in_row(level);
+  const auto find = simd_kernel<find_in_row>();
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(std::max(0, area.x_end - area.x_begin)));
   for (int y = area.y_begin; y < area.y_end; ++y) {
     find(scores, threshold, area, radius, y, marks, candidates);

@@ -6,7 +6,6 @@
 
 #include "features/network/tensor_view.h"
 #include "features/post_processing/candidate.h"
-#include "features/simd_level.h"
 
 namespace dxslam {
 
@@ -18,6 +17,6 @@ void find_candidates(const TensorView& scores, float threshold, std::vector<Cand
 /// which keeps off the rim of the map by a pixel at least: the result of find_candidates() followed
 /// by NonMaximumSuppression without further passes, read off the map itself and so much quicker.
 void find_maxima(const TensorView& scores, float threshold, const PixelArea& area, int radius,
-                 std::vector<Candidate>& candidates, SimdLevel level = simd_level());
+                 std::vector<Candidate>& candidates);
 
 }  // namespace dxslam

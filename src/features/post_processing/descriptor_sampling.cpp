@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
+
 namespace dxslam {
 namespace {
 
@@ -66,30 +68,6 @@ DXSLAM_INLINE_KERNEL void blend_contiguous(const Corners& corners, int channels,
   for (int i = 0; i < channels; ++i) out[i] *= scale;
 }
 
-using Blend = void (*)(const Corners&, int, float*);
-
-void blend_generic(const Corners& corners, int channels, float* out) {
-  blend_contiguous(corners, channels, out);
-}
-
-#ifdef DXSLAM_HAS_X86_SIMD
-DXSLAM_TARGET_AVX2 void blend_avx2(const Corners& corners, int channels, float* out) {
-  blend_contiguous(corners, channels, out);
-}
-DXSLAM_TARGET_AVX512 void blend_avx512(const Corners& corners, int channels, float* out) {
-  blend_contiguous(corners, channels, out);
-}
-#endif
-
-Blend choose_blend(SimdLevel level) {
-#ifdef DXSLAM_HAS_X86_SIMD
-  if (level == SimdLevel::kAvx512) return blend_avx512;
-  if (level == SimdLevel::kAvx2) return blend_avx2;
-#endif
-  (void)level;
-  return blend_generic;
-}
-
 /// Brings the values of the corners side by side, where the map keeps them apart.
 Corners gather(const Corners& corners, const TensorView& map, std::vector<float>& buffer) {
   buffer.resize(4 * static_cast<std::size_t>(map.channels));
@@ -105,9 +83,9 @@ Corners gather(const Corners& corners, const TensorView& map, std::vector<float>
 }  // namespace
 
 cv::Mat sample_descriptors(const TensorView& map, const SamplingGrid& grid,
-                           const std::vector<cv::Point2f>& positions, SimdLevel level) {
+                           const std::vector<cv::Point2f>& positions) {
   cv::Mat descriptors(static_cast<int>(positions.size()), map.channels, CV_32F);
-  const Blend blend = choose_blend(level);
+  const auto blend = simd_kernel<blend_contiguous>();
   std::vector<float> buffer;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Corners corners = find_corners(map, grid, positions[i]);

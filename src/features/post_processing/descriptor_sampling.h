@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "features/network/tensor_view.h"
-#include "features/simd_level.h"
 
 namespace dxslam {
 
@@ -21,8 +20,7 @@ struct SamplingGrid {
 /// dense map outside the network, clamped at the rim, then scaled to unit L2 norm (paper III.B).
 /// Returns N x channels CV_32F; a zero vector stays zero.
 cv::Mat sample_descriptors(const TensorView& map, const SamplingGrid& grid,
-                           const std::vector<cv::Point2f>& positions,
-                           SimdLevel level = simd_level());
+                           const std::vector<cv::Point2f>& positions);
 
 /// One value of a one-channel map, sampled the same way, without normalisation.
 float sample_value(const TensorView& map, const SamplingGrid& grid, const cv::Point2f& position);

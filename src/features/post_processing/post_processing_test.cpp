@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "core/test_simd.h"
 #include "features/post_processing/cell_scores.h"
 #include "features/post_processing/dense_scores.h"
 #include "features/post_processing/descriptor_detection.h"
@@ -21,6 +22,7 @@
 namespace dxslam {
 namespace {
 
+using testing_support::simd_levels;
 using Random = std::mt19937;
 
 std::vector<float> random_values(Random& random, std::size_t count, float low, float high) {
@@ -28,13 +30,6 @@ std::vector<float> random_values(Random& random, std::size_t count, float low, f
   std::vector<float> values(count);
   for (float& v : values) v = uniform(random);
   return values;
-}
-
-std::vector<SimdLevel> levels() {
-  std::vector<SimdLevel> result{SimdLevel::kGeneric};
-  if (simd_level() >= SimdLevel::kAvx2) result.push_back(SimdLevel::kAvx2);
-  if (simd_level() >= SimdLevel::kAvx512) result.push_back(SimdLevel::kAvx512);
-  return result;
 }
 
 double reference_log_probability(const TensorView& logits, int row, int column, int channel) {
@@ -58,9 +53,10 @@ void expect_softmax(int cell, float low, float high, Random& random) {
       high);
   const auto logits = TensorView::nhwc(values.data(), channels, rows, columns);
   const double resolution = 1e-7 * std::max(std::abs(low), std::abs(high));  // of the logits
-  for (const SimdLevel level : levels()) {
+  for (const SimdLevel level : simd_levels()) {
+    set_simd_level(level);
     CellScores scores(cell);
-    const TensorView map = scores.log_probabilities(logits, level);
+    const TensorView map = scores.log_probabilities(logits);
     ASSERT_EQ(map.width, columns * cell);
     ASSERT_EQ(map.height, rows * cell);
     for (int y = 0; y < rows * cell; ++y) {
@@ -325,8 +321,9 @@ TEST(DescriptorSampling, EqualsBilinearInterpolationInBothConventionsAndLayouts)
         for (int i = 0; i < 20; ++i) {
           positions.emplace_back(uniform(random) * 63.0F, uniform(random) * 47.0F);
         }
-        for (const SimdLevel level : levels()) {
-          const cv::Mat sampled = sample_descriptors(map, grid, positions, level);
+        for (const SimdLevel level : simd_levels()) {
+          set_simd_level(level);
+          const cv::Mat sampled = sample_descriptors(map, grid, positions);
           for (std::size_t i = 0; i < positions.size(); ++i) {
             const auto expected = reference_sample(map, grid, positions[i].x, positions[i].y);
             for (int c = 0; c < channels; ++c) {
@@ -364,9 +361,10 @@ TEST(DenseScores, MaximaEqualSuppressionOfAllCandidates) {
       all.erase(std::remove_if(all.begin(), all.end(),
                                [&](const Candidate& c) { return !area.contains(c.x, c.y); }),
                 all.end());
-      for (const SimdLevel level : levels()) {
+      for (const SimdLevel level : simd_levels()) {
+        set_simd_level(level);
         std::vector<Candidate> maxima;
-        find_maxima(map, 0.3F, area, radius, maxima, level);
+        find_maxima(map, 0.3F, area, radius, maxima);
         EXPECT_EQ(sorted_pixels(all), sorted_pixels(maxima)) << "radius " << radius;
       }
     }
