@@ -21,13 +21,17 @@ namespace {
 constexpr std::size_t kMostFrames = 40000;  // 100 MB
 constexpr int kWhite = 128;
 
-LoopTruth make_square(const std::string& path, std::size_t rows, std::size_t columns) {
+void check_square(const std::string& path, std::size_t rows, std::size_t columns) {
   if (rows != columns || rows < 2 || rows > kMostFrames) {
     throw InputError(
         fmt::format("{}: a matrix of {} x {} elements, expected a square one of true loops, 2 to "
                     "{} frames",
                     path, rows, columns, kMostFrames));
   }
+}
+
+LoopTruth make_square(const std::string& path, std::size_t rows, std::size_t columns) {
+  check_square(path, rows, columns);
   return LoopTruth(rows);
 }
 
@@ -58,20 +62,30 @@ LoopTruth from_image(const std::string& path) {
   return truth;
 }
 
+// The first row says how many rows there must be, so that none has to be kept.
 LoopTruth from_text(const std::string& path) {
-  const std::vector<TextRow> rows = read_table(path, "a matrix of true loops");
-  LoopTruth truth = make_square(path, rows.size(), rows.empty() ? 0 : rows.front().fields.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].fields.size() != rows.size()) {
-      throw InputError(fmt::format("{}: {} columns, expected {} as there are rows",
-                                   at_line(path, rows[i].line), rows[i].fields.size(),
-                                   rows.size()));
+  std::optional<LoopTruth> truth;
+  std::size_t rows = 0;
+  std::size_t columns = 0;
+  for_each_row(path, "a matrix of true loops", [&](const TextRow& row) {
+    if (!truth) {
+      columns = row.fields.size();
+      if (columns < 2 || columns > kMostFrames) {
+        refuse_columns(path, row, fmt::format("2 to {}, one per frame", kMostFrames));
+      }
+      truth.emplace(make_square(path, columns, columns));
     }
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-      if (finite_field(path, rows[i], j, "matrix element") != 0.0) mark(truth, i, j);
+    if (row.fields.size() != columns) {
+      refuse_columns(path, row, fmt::format("{} as in the first row", columns));
     }
-  }
-  return truth;
+    for (std::size_t j = 0; j < columns; ++j) {
+      if (finite_field(path, row, j, "matrix element") == 0.0) continue;
+      if (rows < columns) mark(*truth, rows, j);
+    }
+    ++rows;
+  });
+  check_square(path, rows, columns);
+  return *std::move(truth);
 }
 
 bool looks_like_image(const std::string& path) {

@@ -180,7 +180,7 @@ void check(const OpenlorisResult& result) {
 
 OpenlorisResult read_openloris_result(const std::string& path) {
   ResultParser parser(path);
-  for (const TextRow& row : read_table(path, kExpected)) parser.take(row);
+  for_each_row(path, kExpected, [&](const TextRow& row) { parser.take(row); });
   return parser.finish();
 }
 

@@ -231,7 +231,7 @@ void verify_hash(const std::string& path, const std::string& expected) {
 }  // namespace
 
 ModelManifest read_model_manifest(const std::string& path) {
-  YamlMap top = YamlMap::parse(read_file(path, "a model manifest"), path);
+  YamlMap top = YamlMap::parse(read_file(path, "a model manifest", limits::kYamlBytes), path);
   const int format = integer(top, "format", 0, {0, 1000000}, "");
   if (format != kFormat) {
     fail(top, fmt::format("`format` is {}, expected {}", format, kFormat));

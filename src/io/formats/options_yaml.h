@@ -96,7 +96,7 @@ void read_options_yaml(const std::string& text, const std::string& where, Option
 /// The options of a YAML file over the defaults. Throws InputError as read_options_yaml does.
 template <class Options>
 Options load_options(const std::string& path, Options defaults = {}) {
-  read_options_yaml(read_file(path, "a YAML configuration"), path, defaults);
+  read_options_yaml(read_file(path, "a YAML configuration", limits::kYamlBytes), path, defaults);
   return defaults;
 }
 

@@ -24,8 +24,7 @@ constexpr double kQuaternionTolerance = 0.01;
 StampedPose parse_pose(const std::string& path, const TextRow& row) {
   static constexpr const char* kColumns[] = {"stamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   if (row.fields.size() != std::size(kColumns)) {
-    throw InputError(fmt::format("{}: {} columns, expected 8 (stamp tx ty tz qx qy qz qw)",
-                                 at_line(path, row.line), row.fields.size()));
+    refuse_columns(path, row, "8 (stamp tx ty tz qx qy qz qw)");
   }
   double v[8];
   for (std::size_t i = 0; i < std::size(kColumns); ++i) {
@@ -44,7 +43,11 @@ StampedPose parse_pose(const std::string& path, const TextRow& row) {
 
 Trajectory read_trajectory(const std::string& path) {
   Trajectory trajectory;
-  for (const TextRow& row : read_table(path, kExpected)) {
+  for_each_row(path, kExpected, [&](const TextRow& row) {
+    if (trajectory.size() == limits::kPoses) {
+      throw InputError(fmt::format("{}: more than {} poses, expected less", at_line(path, row.line),
+                                   limits::kPoses));
+    }
     trajectory.push_back(parse_pose(path, row));
     const std::size_t n = trajectory.size();
     if (n > 1 && trajectory[n - 1].stamp < trajectory[n - 2].stamp) {
@@ -52,7 +55,7 @@ Trajectory read_trajectory(const std::string& path) {
                                    at_line(path, row.line), trajectory[n - 1].stamp,
                                    trajectory[n - 2].stamp));
     }
-  }
+  });
   if (trajectory.empty()) {
     throw InputError(fmt::format("{}: no pose in it, expected {}", path, kExpected));
   }

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
@@ -16,17 +18,96 @@
 namespace dxslam {
 namespace {
 
+constexpr std::string_view kBlanks = " \t";
 constexpr std::string_view kSeparators = " \t,";
+constexpr std::size_t kReadAtOnce = 1 << 16;
 
-std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> fields;
+void split(std::string_view line, std::vector<std::string>& fields) {
+  fields.clear();
   std::size_t begin = line.find_first_not_of(kSeparators);
   while (begin != std::string_view::npos) {
     const std::size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
     fields.emplace_back(line.substr(begin, end - begin));
     begin = line.find_first_not_of(kSeparators, end);
   }
-  return fields;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+// Whether the text is a number with a comma where its point should be.
+bool is_comma_number(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || comma == 0 || comma + 1 == text.size()) return false;
+  std::string number(text);
+  number[comma] = '.';
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  return is_digit(text[comma - 1]) && is_digit(text[comma + 1]) && parse_number(number).has_value();
+}
+
+// Makes rows of lines, one after the other.
+class RowReader {
+ public:
+  RowReader(const std::string& where, const std::function<void(const TextRow&)>& take)
+      : where_(where), take_(take) {}
+
+  void operator()(std::string_view line) {
+    if (++row_.line == 1) line = without_byte_order_mark(line);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (row_.line == 1 && (line.substr(0, 2) == "\xFF\xFE" || line.substr(0, 2) == "\xFE\xFF")) {
+      throw InputError(fmt::format("{}: UTF-16 text, expected UTF-8", at_line(where_, row_.line)));
+    }
+    if (line.find('\0') != std::string_view::npos) {
+      throw InputError(fmt::format("{}: binary data, expected text", at_line(where_, row_.line)));
+    }
+    line = trimmed(line);
+    if (line.empty() || line.front() == '#') return;
+    split(line, row_.fields);
+    if (row_.fields.empty()) return;
+    row_.text = line;
+    take_(row_);
+  }
+
+ private:
+  const std::string& where_;
+  const std::function<void(const TextRow&)>& take_;
+  TextRow row_;
+};
+
+[[noreturn]] void refuse_size(const std::string& path, std::uintmax_t size,
+                              const std::string& expected, std::size_t max_bytes) {
+  throw InputError(fmt::format("{}: {} bytes, expected {} of at most {} bytes", path, size,
+                               expected, max_bytes));
+}
+
+// Bytes of a regular file that can be read.
+std::uintmax_t checked_size(const std::string& path, const std::string& expected,
+                            std::size_t max_bytes) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw InputError(fmt::format("{}: no such file, expected {}", path, expected));
+  }
+  if (error) throw InputError(fmt::format("{}: {}, expected {}", path, error.message(), expected));
+  if (!fs::is_regular_file(status)) {
+    throw InputError(fmt::format("{}: not a regular file, expected {}", path, expected));
+  }
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
+  if (size > max_bytes) refuse_size(path, size, expected, max_bytes);
+  return size;
+}
+
+std::ifstream open_file(const std::string& path, const std::string& expected) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (file) return file;
+  throw InputError(fmt::format("{}: cannot be read{}{}, expected {}", path, errno == 0 ? "" : ": ",
+                               errno == 0 ? "" : std::strerror(errno), expected));
 }
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -47,51 +128,100 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string read_file(const std::string& path, const std::string& expected, std::size_t max_bytes) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) {
-    throw InputError(fmt::format("{}: no such file, expected {}", path, expected));
-  }
-  if (!fs::is_regular_file(status)) {
-    throw InputError(fmt::format("{}: not a regular file, expected {}", path, expected));
-  }
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
-  if (size > max_bytes) {
-    throw InputError(fmt::format("{}: {} bytes, expected {} of at most {} bytes", path, size,
-                                 expected, max_bytes));
-  }
+  const std::uintmax_t size = checked_size(path, expected, max_bytes);
+  std::ifstream file = open_file(path, expected);
   std::string bytes(static_cast<std::size_t>(size), '\0');
-  std::ifstream file(path, std::ios::binary);
   if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
     throw InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
   }
   return bytes;
 }
 
+std::string_view TextRow::rest(std::size_t index) const {
+  std::string_view left = text;
+  left.remove_prefix(std::min(left.find_first_not_of(kSeparators), left.size()));
+  for (; index > 0 && !left.empty(); --index) {
+    left.remove_prefix(std::min(left.find_first_of(kSeparators), left.size()));
+    left.remove_prefix(std::min(left.find_first_not_of(kSeparators), left.size()));
+  }
+  return left;
+}
+
+void for_each_row(const std::string& path, const std::string& expected,
+                  const std::function<void(const TextRow&)>& take) {
+  checked_size(path, expected, limits::kTextBytes);
+  std::ifstream file = open_file(path, expected);
+  RowReader rows(path, take);
+  std::vector<char> chunk(kReadAtOnce);
+  std::string line;
+  int number = 1;
+  std::size_t total = 0;
+  while (file) {
+    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    std::string_view text(chunk.data(), static_cast<std::size_t>(file.gcount()));
+    total += text.size();
+    if (total > limits::kTextBytes) refuse_size(path, total, expected, limits::kTextBytes);
+    for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+      line += text.substr(0, end);
+      rows(line);
+      line.clear();
+      ++number;
+      text.remove_prefix(end + 1);
+    }
+    line += text;
+    if (line.size() > limits::kTextLineBytes) {
+      throw InputError(fmt::format("{}: a line of more than {} bytes, expected {}",
+                                   at_line(path, number), limits::kTextLineBytes, expected));
+    }
+  }
+  if (file.bad()) throw InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
+  rows(line);
+}
+
 std::vector<TextRow> parse_table(std::string_view text, const std::string& where) {
-  if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
   std::vector<TextRow> rows;
-  int number = 0;
+  const std::function<void(const TextRow&)> keep = [&](const TextRow& row) { rows.push_back(row); };
+  RowReader reader(where, keep);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
+    reader(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
-    ++number;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    if (line.find('\0') != std::string_view::npos) {
-      throw InputError(fmt::format("{}: binary data, expected text", at_line(where, number)));
-    }
-    TextRow row{number, split(line)};
-    if (row.fields.empty() || row.fields.front().front() == '#') continue;
-    rows.push_back(std::move(row));
   }
   return rows;
 }
 
 std::vector<TextRow> read_table(const std::string& path, const std::string& expected) {
-  return parse_table(read_file(path, expected), path);
+  return parse_table(read_file(path, expected, limits::kSmallTextBytes), path);
+}
+
+void refuse_columns(const std::string& path, const TextRow& row, const std::string& expected) {
+  const char* hint = "";
+  if (has_decimal_commas(row.text)) {
+    hint = "; its numbers have decimal commas, expected decimal points";
+  } else if (row.text.find(';') != std::string::npos) {
+    hint = "; its columns are parted by semicolons, expected blanks, tabs or commas";
+  }
+  throw InputError(fmt::format("{}: {} columns, expected {}{}", at_line(path, row.line),
+                               row.fields.size(), expected, hint));
+}
+
+bool has_decimal_commas(std::string_view text) {
+  constexpr std::string_view kParts = " \t;";
+  bool found = false;
+  std::size_t parts = 0;
+  while (!text.empty()) {
+    text.remove_prefix(std::min(text.find_first_not_of(kParts), text.size()));
+    const std::size_t end = std::min(text.find_first_of(kParts), text.size());
+    found = found || is_comma_number(text.substr(0, end));
+    parts += end > 0 ? 1 : 0;
+    text.remove_prefix(end);
+  }
+  return found && parts > 1;
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
+  return text;
 }
 
 std::string at_line(const std::string& path, int line) { return fmt::format("{}:{}", path, line); }

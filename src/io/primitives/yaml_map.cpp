@@ -6,9 +6,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
+#include <unordered_map>
 
 #include "core/error.h"
 #include "io/primitives/text_file.h"
+#include "io/primitives/yaml_text.h"
 
 namespace dxslam {
 namespace {
@@ -19,9 +21,6 @@ struct Entry {
   YAML::Node value;
 };
 
-// yaml-cpp counts lines from 0; -1 stands for "unknown".
-int line_of(const YAML::Mark& mark) { return mark.line < 0 ? 1 : mark.line + 1; }
-
 }  // namespace
 
 struct YamlMap::State {
@@ -29,14 +28,13 @@ struct YamlMap::State {
   std::string prefix;  // names of the maps around this one, each with a dot behind
   int line = 1;
   std::vector<Entry> entries;
+  std::unordered_map<std::string, std::size_t> places;  // of the entries, by key
   std::vector<std::string> asked;
 
   const Entry* find(const char* name) {
     asked.emplace_back(name);
-    for (const Entry& entry : entries) {
-      if (entry.key == name) return &entry;
-    }
-    return nullptr;
+    const auto found = places.find(name);
+    return found == places.end() ? nullptr : &entries[found->second];
   }
 
   [[noreturn]] void fail(const Entry& entry, const std::string& expected) const {
@@ -60,14 +58,15 @@ struct YamlMap::State {
   }
 
   void add(const YAML::Node& key, const YAML::Node& value) {
-    const int entry_line = line_of(key.Mark());
+    const int entry_line = yaml_line(key.Mark());
     if (!key.IsScalar()) {
       throw InputError(fmt::format("{}: a key that is no plain name", at_line(where, entry_line)));
     }
-    for (const Entry& earlier : entries) {
-      if (earlier.key != key.Scalar()) continue;
+    const auto [place, is_new] = places.emplace(key.Scalar(), entries.size());
+    if (!is_new) {
       throw InputError(fmt::format("{}: {}{} is given twice, first in line {}",
-                                   at_line(where, entry_line), prefix, key.Scalar(), earlier.line));
+                                   at_line(where, entry_line), prefix, key.Scalar(),
+                                   entries[place->second].line));
     }
     entries.push_back({key.Scalar(), entry_line, value});
   }
@@ -79,15 +78,11 @@ YamlMap& YamlMap::operator=(YamlMap&&) noexcept = default;
 YamlMap::~YamlMap() = default;
 
 YamlMap YamlMap::parse(const std::string& text, const std::string& where) {
-  try {
-    const YAML::Node root = YAML::Load(text);
-    if (!root.IsMap() && !root.IsNull()) {
-      throw InputError(fmt::format("{}: expected 'name: value' lines", at_line(where, 1)));
-    }
-    return YamlMap(State::of(root, where, "", 1));
-  } catch (const YAML::Exception& e) {
-    throw InputError(fmt::format("{}: not valid YAML: {}", at_line(where, line_of(e.mark)), e.msg));
+  const YAML::Node root = parse_yaml(text, where);
+  if (!root.IsMap() && !root.IsNull()) {
+    throw InputError(fmt::format("{}: expected 'name: value' lines", at_line(where, 1)));
   }
+  return YamlMap(State::of(root, where, "", 1));
 }
 
 bool YamlMap::take(const char* name, bool& value) {

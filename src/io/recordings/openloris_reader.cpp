@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "io/calibration/calibration.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/text_file.h"
+#include "io/primitives/yaml_text.h"
 #include "io/recordings/openloris_sensors.h"
 #include "io/recordings/sequence_formats.h"
 
@@ -23,16 +23,12 @@ constexpr const char* kBaseFrame = "base_link";
 
 // The dataset's files are OpenCV's dialect, whose first line "%YAML:1.0" is not YAML.
 YAML::Node load_opencv_yaml(const std::string& path) {
-  std::string text = read_file(path, "a YAML file of OpenLORIS-Scene");
+  std::string text = read_file(path, "a YAML file of OpenLORIS-Scene", limits::kYamlBytes);
   if (!text.empty() && text.front() == '%') {
     const std::size_t end = std::min(text.find('\n'), text.size());
     text.replace(0, end, end, ' ');
   }
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& e) {
-    throw InputError(fmt::format("{}: not valid YAML: {}", at_line(path, e.mark.line + 1), e.msg));
-  }
+  return parse_yaml(text, path);
 }
 
 // Entry `key`, or an empty node where there is none: yaml-cpp throws when asked about missing ones.
@@ -105,7 +101,7 @@ std::optional<SE3> read_base_from_color(const std::string& path) {
     const auto data = matrix_data(child(item, "matrix"), 16, path, "matrix of the colour camera");
     double values[16];
     std::copy(data.begin(), data.end(), values);
-    return pose_from_row_major(values, at_line(path, item.Mark().line + 1));
+    return pose_from_row_major(values, at_line(path, yaml_line(item.Mark())));
   }
   return std::nullopt;
 }

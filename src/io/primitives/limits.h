@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cstddef>
+
+/// The most that one input may hold: one limit per kind, far above what real data need, so that a
+/// broken or hostile file costs seconds and not the machine. docs/file_formats.md lists them.
+namespace dxslam::limits {
+
+/// A file that is read as a whole (images, models, tables of loops in binary).
+inline constexpr std::size_t kFileBytes = std::size_t{256} << 20;
+/// A text file that is read line by line (lists, trajectories, matrices).
+inline constexpr std::size_t kTextBytes = std::size_t{512} << 20;
+/// One line of it; a row of a matrix of 40,000 true loops has some 0.4 MB.
+inline constexpr std::size_t kTextLineBytes = std::size_t{4} << 20;
+/// A text file of a few numbers, held as a whole (camera matrices, single poses).
+inline constexpr std::size_t kSmallTextBytes = std::size_t{1} << 20;
+/// Frames of one recording: 18 hours at 30 Hz.
+inline constexpr std::size_t kFrames = 2'000'000;
+/// Poses of one trajectory: 13 hours at 200 Hz.
+inline constexpr std::size_t kPoses = 10'000'000;
+
+/// YAML: configurations, calibrations, manifests. Its largest known here has some 250 entries.
+inline constexpr std::size_t kYamlBytes = std::size_t{1} << 20;
+inline constexpr std::size_t kYamlNodes = 10'000;  ///< scalars, lists, maps and aliases
+inline constexpr std::size_t kYamlDepth = 32;      ///< maps and lists inside each other
+
+}  // namespace dxslam::limits
