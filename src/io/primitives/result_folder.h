@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace dxslam {
+
+/// Which files of a folder are results. Names are patterns as in a shell (`map_[0-9]*.txt`).
+struct ResultFiles {
+  std::vector<std::string> all;
+  /// One of these is written last: a folder that holds none has no whole results.
+  std::vector<std::string> last;
+  /// Text files, of which one must hold more than comments. Results without do not count as whole.
+  std::vector<std::string> content;
+};
+
+/// A folder into which one run at a time writes its results, which replace those of the run before
+/// as a whole. Other files in it are left alone.
+///
+/// Nothing is touched before begin(). Then the last results move to the folder `previous`, and
+/// finish() removes them there once the new ones are whole. A process that is killed at any time
+/// thus leaves the last results whole, in place or in `previous`, and never beside its own: the
+/// next begin() removes what a killed run left and keeps what is in `previous`. One thread at a
+/// time.
+class ResultFolder {
+ public:
+  /// Makes the folder, where it is missing, and takes it for this object; no other process gets it
+  /// as long. Throws InputError, one sentence, if it cannot be made or written to, if another run
+  /// writes into it, and if its folder `previous` holds other files.
+  ResultFolder(std::string folder, ResultFiles files);
+  ~ResultFolder();
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+  const std::string& path() const { return folder_; }
+  /// The path of a file in it.
+  std::string file(const std::string& name) const;
+
+  /// Puts the last results aside; once, further calls do nothing. Throws InputError if that fails,
+  /// and goes on where it stopped when it is called again.
+  void begin();
+  /// Removes the last results, unless the new ones are not whole. Returns whether there are none
+  /// left. Failures are passed over.
+  bool finish();
+
+ private:
+  bool whole() const;
+  std::vector<std::string> results_in(const std::string& folder) const;
+  void move_aside();
+  void lock();
+  void release();
+
+  std::string folder_;
+  ResultFiles files_;
+  int lock_ = -1;
+  bool made_ = false;  // the folder was not there
+  bool begun_ = false;
+};
+
+}  // namespace dxslam

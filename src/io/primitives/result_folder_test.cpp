@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "io/primitives/result_folder.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+
+#include <set>
+
+#include "io/primitives/atomic_file.h"
+#include "io/primitives/test_folder.h"
+
+namespace dxslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+ResultFiles run_files() {
+  return {
+      {"trajectory.txt", "map_[0-9]*.txt", "summary.json"}, {"summary.json"}, {"trajectory.txt"}};
+}
+
+std::set<std::string> files_in(const std::string& folder) {
+  std::set<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; ++it) {
+    if (it->is_regular_file()) names.insert(it->path().filename().string());
+  }
+  return names;
+}
+
+using Names = std::set<std::string>;
+
+// A run with results of `text` that ends as it should.
+void write_results(const TestFolder& folder, const std::string& text, bool with_map = false) {
+  ResultFolder results(folder.path(), run_files());
+  results.begin();
+  write_file_atomically(results.file("trajectory.txt"), text);
+  if (with_map) write_file_atomically(results.file("map_1.txt"), text);
+  write_file_atomically(results.file("summary.json"), text);
+  results.finish();
+}
+
+TEST(ResultFolder, ReplacesAllResultsAndNothingElse) {
+  const TestFolder folder;
+  folder.write("notes.txt", "mine");
+  folder.write("map_of_town.txt", "mine");
+  write_results(folder, "first", true);
+  write_results(folder, "second");
+  EXPECT_EQ(files_in(folder.path()),
+            (Names{"trajectory.txt", "summary.json", "notes.txt", "map_of_town.txt"}));
+  EXPECT_EQ(folder.read("trajectory.txt"), "second");
+  EXPECT_FALSE(fs::exists(folder / "previous"));
+}
+
+TEST(ResultFolder, TouchesNothingBeforeTheBeginning) {
+  const TestFolder folder;
+  write_results(folder, "first", true);
+  {
+    const ResultFolder results(folder.path(), run_files());
+  }
+  EXPECT_EQ(files_in(folder.path()), (Names{"trajectory.txt", "summary.json", "map_1.txt"}));
+  const std::string missing = folder / "new";
+  {
+    const ResultFolder results(missing, run_files());
+  }
+  EXPECT_FALSE(fs::exists(missing));
+}
+
+TEST(ResultFolder, KeepsTheLastResultsApartUntilTheNewOnesAreWhole) {
+  const TestFolder folder;
+  write_results(folder, "first", true);
+  for (int killed = 0; killed < 2; ++killed) {  // not finished: as if it had been killed
+    ResultFolder results(folder.path(), run_files());
+    results.begin();
+    folder.write("trajectory.txt", "unfinished");
+  }
+  EXPECT_EQ(files_in(folder.path()), (Names{"trajectory.txt"}));
+  EXPECT_EQ(files_in(folder / "previous"), (Names{"trajectory.txt", "summary.json", "map_1.txt"}));
+  EXPECT_EQ(folder.read("previous/trajectory.txt"), "first");
+  write_results(folder, "second");
+  EXPECT_EQ(files_in(folder.path()), (Names{"trajectory.txt", "summary.json"}));
+  EXPECT_FALSE(fs::exists(folder / "previous"));
+}
+
+TEST(ResultFolder, ResultsWithoutContentDoNotReplaceThoseWith) {
+  const TestFolder folder;
+  write_results(folder, "# stamps\n1 2 3\n");
+  for (int run = 0; run < 2; ++run) {
+    write_results(folder, "# stamps\n");
+    EXPECT_EQ(folder.read("trajectory.txt"), "# stamps\n");
+    EXPECT_EQ(folder.read("previous/trajectory.txt"), "# stamps\n1 2 3\n");
+  }
+}
+
+// Killed at any moment, the last results are whole: in place, in `previous`, or, while they are
+// moved, in two folders of which the next run makes one.
+TEST(ResultFolder, SurvivesAKillAtAnyTime) {
+  for (int delay = 0; delay < 40; ++delay) {
+    const TestFolder folder;
+    write_results(folder, "first", true);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      for (;;) write_results(folder, "second", true);
+    }
+    ::usleep(static_cast<useconds_t>(100 * delay));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    const Names whole{"trajectory.txt", "summary.json", "map_1.txt"};
+    ResultFolder next(folder.path(), run_files());
+    next.begin();
+    EXPECT_EQ(files_in(folder / "previous"), whole);
+    const std::string text = folder.read("previous/trajectory.txt");
+    EXPECT_TRUE(text == "first" || text == "second");
+    EXPECT_EQ(folder.read("previous/map_1.txt"), text);
+    EXPECT_EQ(folder.read("previous/summary.json"), text);
+  }
+}
+
+TEST(ResultFolder, BelongsToOneRun) {
+  const TestFolder folder;
+  {
+    const ResultFolder results(folder.path(), run_files());
+    expect_input_error([&] { ResultFolder(folder.path(), run_files()); },
+                       {folder.path(), "in use by another run"});
+  }
+  EXPECT_TRUE(files_in(folder.path()).empty());
+  const ResultFolder results(folder.path(), run_files());
+}
+
+TEST(ResultFolder, RefusesFoldersThatItCannotUse) {
+  const TestFolder folder;
+  folder.write("file", "text");
+  expect_input_error([&] { ResultFolder(folder / "file", run_files()); }, {"file"});
+  folder.write("previous/holiday.jpg", "mine");
+  expect_input_error([&] { ResultFolder(folder.path(), run_files()); }, {"previous/holiday.jpg"});
+  EXPECT_EQ(folder.read("previous/holiday.jpg"), "mine");
+}
+
+}  // namespace
+}  // namespace dxslam
