@@ -3,14 +3,28 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <string>
 
 namespace dxslam {
 
+/// Pixels from `left` to `right` and `top` to `bottom`, the ends included; holds none by default.
+struct PixelBox {
+  double left = 0.0, top = 0.0, right = -1.0, bottom = -1.0;
+
+  /// False for a pixel that is not finite.
+  bool contains(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= left && pixel.y() >= top && pixel.x() <= right && pixel.y() <= bottom;
+  }
+  /// The cell, row * columns + column, of a grid over the box that a pixel lies in. A pixel outside
+  /// counts to the nearest cell, one that is not a number to the first.
+  std::size_t cell_of(const Eigen::Vector2f& pixel, int columns, int rows) const;
+};
+
 /// Pinhole camera with radial-tangential distortion (k1 k2 p1 p2 k3, the model of OpenCV and TUM)
 /// and the depth sensor that is registered to it. Pixel centres are at integer coordinates.
-/// Plain data; safe to copy and to share between threads.
+/// Plain data; safe to copy and to share between threads once prepare() was called.
 struct Camera {
   static constexpr double kNearest = 0.05;  ///< metres along z; nearer points count as out of view
 
@@ -30,8 +44,10 @@ struct Camera {
   /// topmost row; 0 for a global shutter.
   double readout_time = 0.0;
 
-  /// Throws InputError, naming the field, if the values cannot be those of a camera.
-  void validate(const std::string& where) const;
+  /// Checks the values and computes view(). To be called where a camera enters the program, and
+  /// again after a change. Throws InputError, naming the field, if the values cannot be those of a
+  /// camera, or if the lens cannot be undistorted all over the image.
+  void prepare(const std::string& where);
 
   bool has_distortion() const {
     return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
@@ -49,20 +65,27 @@ struct Camera {
     return {(pixel.x() - cx) / fx * depth, (pixel.y() - cy) / fy * depth, depth};
   }
   /// Raw (distorted) pixel to the pixel of an ideal pinhole with the same intrinsics, and back.
+  /// undistort() is for pixels of the image.
   Eigen::Vector2d undistort(const Eigen::Vector2d& pixel) const;
   Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
-  bool contains(const Eigen::Vector2d& pixel) const {
-    return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= width - 1.0 &&
-           pixel.y() <= height - 1.0;
+  /// The box around all undistorted pixels of the image. A barrel lens sees farther than the raw
+  /// image is wide. Holds nothing where a lens was not prepared.
+  PixelBox view() const {
+    return has_distortion() ? undistorted_ : PixelBox{0.0, 0.0, width - 1.0, height - 1.0};
   }
+  /// Whether an undistorted pixel lies in view().
+  bool contains(const Eigen::Vector2d& pixel) const { return view().contains(pixel); }
   /// Undistorted pixel of a point in the camera frame; empty if it is behind the camera, nearer
-  /// than kNearest or outside of the image.
+  /// than kNearest or outside of view().
   std::optional<Eigen::Vector2d> project_into_view(const Eigen::Vector3d& point_in_camera) const {
-    if (point_in_camera.z() <= kNearest) return std::nullopt;
+    if (!(point_in_camera.z() > kNearest)) return std::nullopt;
     std::optional<Eigen::Vector2d> pixel = project(point_in_camera);
     if (!contains(*pixel)) pixel.reset();
     return pixel;
   }
+
+ private:
+  PixelBox undistorted_;
 };
 
 }  // namespace dxslam

@@ -32,9 +32,17 @@ Camera freiburg1() {
   return c;
 }
 
-std::string refusal(const Camera& camera) {
+Camera barrel_lens() {
+  Camera c = freiburg1();
+  c.fx = c.fy = 400.0;
+  c.k1 = -0.1;
+  c.k2 = c.p1 = c.p2 = c.k3 = 0.0;
+  return c;
+}
+
+std::string refusal(Camera camera) {
   try {
-    camera.validate("calib.yaml");
+    camera.prepare("calib.yaml");
   } catch (const InputError& error) {
     return error.what();
   }
@@ -81,7 +89,8 @@ TEST(Camera, LeavesPixelsAloneWithoutDistortion) {
 }
 
 TEST(Camera, ContainsPixelCentresOnly) {
-  const Camera c = freiburg1();
+  Camera c = freiburg1();
+  c.k1 = c.k2 = c.p1 = c.p2 = c.k3 = 0.0;
   EXPECT_TRUE(c.contains({0.0, 0.0}));
   EXPECT_TRUE(c.contains({639.0, 479.0}));
   EXPECT_FALSE(c.contains({639.5, 10.0}));
@@ -89,7 +98,48 @@ TEST(Camera, ContainsPixelCentresOnly) {
   EXPECT_FALSE(c.contains({10.0, std::nan("")}));
 }
 
-TEST(Camera, AcceptsARealCalibration) { EXPECT_NO_THROW(freiburg1().validate("calib.yaml")); }
+// The edge of a barrel lens's image lies outside of the raw rectangle once it is undistorted.
+TEST(Camera, ContainsTheUndistortedImageOfALens) {
+  Camera c = barrel_lens();
+  c.prepare("calib.yaml");
+  for (int i = 0; i <= 100; ++i) {
+    for (const Eigen::Vector2d& raw :
+         {Eigen::Vector2d(6.39 * i, 0.0), Eigen::Vector2d(6.39 * i, 479.0),
+          Eigen::Vector2d(0.0, 4.79 * i), Eigen::Vector2d(639.0, 4.79 * i)}) {
+      const Eigen::Vector2d pixel = c.undistort(raw);
+      EXPECT_LT((c.distort(pixel) - raw).norm(), 1e-6) << raw.transpose();
+      const Eigen::Vector2d inwards = Eigen::Vector2d(c.cx, c.cy) - pixel;
+      EXPECT_TRUE(c.contains(pixel + 1e-3 * inwards)) << raw.transpose();
+    }
+  }
+  EXPECT_LT(c.view().left, -30.0);
+  EXPECT_FALSE(c.contains({c.view().left - 1.0, 200.0}));
+  EXPECT_TRUE(c.project_into_view(c.unproject(c.undistort({1.0, 240.0}), 2.0)).has_value());
+}
+
+TEST(Camera, RefusesALensThatFoldsTheImage) {
+  Camera c = barrel_lens();
+  c.k1 = -0.6;
+  EXPECT_THAT(refusal(c), AllOf(HasSubstr("calib.yaml: the distortion k1 -0.6"),
+                                HasSubstr("cannot be undone at pixel (0, 0)")));
+  c.k1 = 30.0;  // so strong that a pixel is a tenth of its area: still one direction a pixel
+  EXPECT_EQ(refusal(c), "");
+  c.k1 = -0.1;
+  c.p1 = 5.0;
+  EXPECT_THAT(refusal(c), HasSubstr("cannot be undone"));
+}
+
+TEST(PixelBox, PutsEveryPixelIntoOneOfItsCells) {
+  const PixelBox box{-10.0, 0.0, 29.0, 19.0};
+  EXPECT_EQ(box.cell_of({-10.0F, 0.0F}, 4, 2), 0U);
+  EXPECT_EQ(box.cell_of({29.0F, 19.0F}, 4, 2), 7U);
+  EXPECT_EQ(box.cell_of({5.0F, 12.0F}, 4, 2), 5U);
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(box.cell_of({-infinity, 1e30F}, 4, 2), 4U);
+  EXPECT_EQ(box.cell_of({std::nanf(""), std::nanf("")}, 4, 2), 0U);
+}
+
+TEST(Camera, AcceptsARealCalibration) { EXPECT_EQ(refusal(freiburg1()), ""); }
 
 TEST(Camera, NamesPlaceFieldAndBoundsOfABadValue) {
   Camera c = freiburg1();

@@ -9,6 +9,7 @@
 namespace dxslam {
 namespace {
 
+constexpr auto kNearest = static_cast<float>(Camera::kNearest);
 constexpr float kSameSurface = 0.02F;  // neighbours within 2 % of depth belong to one surface
 
 float depth_at(const cv::Mat& depth, float x, float y, double max_depth) {
@@ -17,7 +18,7 @@ float depth_at(const cv::Mat& depth, float x, float y, double max_depth) {
   if (nearest_x < 0 || nearest_y < 0 || nearest_x >= depth.cols || nearest_y >= depth.rows)
     return 0;
   const float nearest = depth.at<float>(nearest_y, nearest_x);
-  if (!(nearest > 0.0F) || nearest > static_cast<float>(max_depth)) return 0.0F;
+  if (!(nearest > kNearest) || nearest > static_cast<float>(max_depth)) return 0.0F;
 
   const int x0 = static_cast<int>(std::floor(x));
   const int y0 = static_cast<int>(std::floor(y));
@@ -36,6 +37,9 @@ float depth_at(const cv::Mat& depth, float x, float y, double max_depth) {
 }
 
 void check_inputs(const RgbdImage& image, const Features& features, const Camera& camera) {
+  require(image.color.empty() ||
+              (image.color.cols == camera.width && image.color.rows == camera.height),
+          "colour image must have the size of the camera");
   require(image.depth.empty() || image.depth.type() == CV_32FC1,
           "depth image must be CV_32FC1 metres");
   require(image.depth.empty() ||

@@ -41,8 +41,9 @@ struct Frame {
 using FramePtr = std::shared_ptr<const Frame>;
 
 /// Undistorts the keypoints and reads their depth: bilinear over the four neighbours where these
-/// agree, else the nearest pixel's reading, so that no depth is invented across an edge.
-/// Throws ContractError if the image, depth or descriptors do not fit the camera or each other.
+/// agree, else the nearest pixel's reading, so that no depth is invented across an edge. Readings
+/// nearer than Camera::kNearest count as missing. Throws ContractError if colour, depth or
+/// descriptors do not fit the camera or each other; `color` may be empty.
 FramePtr make_frame(const RgbdImage& image, const Features& features, const Camera& camera);
 
 }  // namespace dxslam

@@ -53,6 +53,22 @@ TEST_F(FrameTest, CarriesWhatTheExtractorSaid) {
   EXPECT_TRUE(frame->has_depth(0));
 }
 
+TEST_F(FrameTest, RefusesImagesOfAnotherSize) {
+  const Features none;
+  image_.color = cv::Mat::zeros(48, 64, CV_8UC3);
+  EXPECT_NO_THROW(make_frame(image_, none, camera_));
+  image_.color = cv::Mat::zeros(48, 32, CV_8UC3);
+  EXPECT_THROW(make_frame(image_, none, camera_), ContractError);
+  image_.color = cv::Mat();
+  image_.depth = cv::Mat::zeros(24, 64, CV_32FC1);
+  EXPECT_THROW(make_frame(image_, none, camera_), ContractError);
+}
+
+TEST_F(FrameTest, TakesReadingsTooNearAsMissing) {
+  image_.depth.at<float>(10, 10) = 1e-6F;
+  EXPECT_EQ(depth_at(10.0F, 10.0F), 0.0F);
+}
+
 TEST_F(FrameTest, UndistortsPixelsButReadsDepthAtTheRawOnes) {
   camera_.k1 = 0.5;
   image_.depth.at<float>(2, 3) = 1.0F;

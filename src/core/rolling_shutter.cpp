@@ -20,7 +20,9 @@ FramePtr without_rolling_shutter(const FramePtr& raw, const Camera& camera,
     const Eigen::Vector3d moved =
         has_depth ? middle_from_row * seen : Eigen::Vector3d(middle_from_row.rotation() * seen);
     if (moved.z() <= Camera::kNearest) continue;
-    frame->pixels[i] = camera.project(moved).cast<float>();
+    const Eigen::Vector2d corrected = camera.project(moved);
+    if (!((corrected - pixel).norm() < camera.width)) continue;  // no camera turns as fast
+    frame->pixels[i] = corrected.cast<float>();
     if (has_depth) frame->depths[i] = static_cast<float>(moved.z());
   }
   return frame;

@@ -47,8 +47,11 @@ double DepthView::share_seen_by(const DepthView& other) const {
 }
 
 float DepthView::depth_at(const Eigen::Vector3d& point) const {
-  const Eigen::Vector2d pixel = camera_.project(point);
-  if (!camera_.contains(pixel)) return -1.0F;
+  const Eigen::Vector2d undistorted = camera_.project(point);
+  if (!camera_.contains(undistorted)) return -1.0F;
+  const Eigen::Vector2d pixel = camera_.distort(undistorted);
+  const PixelBox image{0.0, 0.0, camera_.width - 1.0, camera_.height - 1.0};
+  if (!image.contains(pixel)) return -1.0F;
   const int x = std::min(depth_.cols - 1, static_cast<int>(std::lround(pixel.x() / kStep)));
   const int y = std::min(depth_.rows - 1, static_cast<int>(std::lround(pixel.y() / kStep)));
   return depth_.at<float>(y, x);

@@ -229,10 +229,7 @@ class LoopVerifier {
   }
 
   std::size_t cell_of(const Eigen::Vector2f& pixel) const {
-    const int x = static_cast<int>(pixel.x() / static_cast<float>(camera_.width) * kColumns);
-    const int y = static_cast<int>(pixel.y() / static_cast<float>(camera_.height) * kRows);
-    return static_cast<std::size_t>(std::clamp(y, 0, kRows - 1) * kColumns +
-                                    std::clamp(x, 0, kColumns - 1));
+    return camera_.view().cell_of(pixel, kColumns, kRows);
   }
 
   void collect_inliers() {

@@ -132,7 +132,8 @@ void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFil
   require(
       snapshot.thumbnails.empty() || snapshot.thumbnails.size() == snapshot.parts.keyframes.size(),
       "there must be one thumbnail a keyframe, or none at all");
-  snapshot.header.camera.validate(path);
+  Camera camera = snapshot.header.camera;
+  camera.prepare(path);
   static_cast<void>(Map(snapshot.parts));  // throws for what could not be loaded again
   const DescriptorTraits& traits = snapshot.header.traits;
   const DescriptorCoding floats =

@@ -96,7 +96,7 @@ MapHeader read_header(SectionReader reader, const std::string& where) {
         &c.depth_baseline, &c.disparity_noise, &c.max_depth}) {
     *value = reader.get<double>();
   }
-  c.validate(where);
+  c.prepare(where);
   const auto binary = reader.get<std::uint32_t>();
   if (binary > 1) reader.fail(fmt::format("descriptors of kind {}", binary));
   DescriptorTraits& traits = header.traits;

@@ -45,6 +45,21 @@ TEST(KeypointGrid, AnEmptyOneFindsNothing) {
   grid.for_each_within({1.0F, 1.0F}, 100.0F, [](int) { FAIL(); });
 }
 
+// As of a map that somebody has tampered with, or a lens that could not be undistorted.
+TEST(KeypointGrid, NeverFindsAPixelThatIsNotFinite) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<Eigen::Vector2f> pixels = {
+      {nan, 5.0F}, {5.0F, 5.0F}, {5.0F, -infinity}, {1e30F, -1e30F}, {nan, nan}};
+  const KeypointGrid grid(pixels);
+  std::vector<int> found;
+  grid.for_each_within({6.0F, 6.0F}, 10.0F, [&](int k) { found.push_back(k); });
+  EXPECT_EQ(found, std::vector<int>{1});
+  for (const Eigen::Vector2f& center : {pixels[0], pixels[2], pixels[4]}) {
+    grid.for_each_within(center, 100.0F, [](int) { FAIL(); });
+  }
+}
+
 TEST(MatchGuided, TakesTheNearestDescriptorWithinTheRadius) {
   const Frame frame = frame_of({{10, 10}, {12, 10}, {100, 100}}, kAxes.rowRange(0, 3));
   const KeypointGrid grid(frame.pixels);

@@ -8,7 +8,7 @@
 namespace dxslam {
 
 /// Buckets of keypoints for radius queries. Holds indices only; the pixels it was built from must
-/// outlive it. Immutable, safe to share between threads.
+/// outlive it. A pixel that is not finite is never found. Immutable, safe to share between threads.
 class KeypointGrid {
  public:
   explicit KeypointGrid(const std::vector<Eigen::Vector2f>& pixels, float cell_size = 16.0F);
@@ -17,6 +17,7 @@ class KeypointGrid {
   /// depends on the keypoints alone.
   template <class Visitor>
   void for_each_within(const Eigen::Vector2f& center, float radius, Visitor&& visit) const {
+    if (!center.allFinite()) return;
     const int x0 = clamp_column(center.x() - radius), x1 = clamp_column(center.x() + radius);
     const int y0 = clamp_row(center.y() - radius), y1 = clamp_row(center.y() + radius);
     for (int y = y0; y <= y1; ++y) {

@@ -124,13 +124,9 @@ double PoseRefiner::coverage(const std::vector<Eigen::Vector2f>& in_view,
     bool agrees = false;
   };
   std::array<Area, kAreaColumns * kAreaRows> areas{};
+  const PixelBox view = camera_.view();
   const auto area_of = [&](const Eigen::Vector2f& pixel) -> Area& {
-    const auto part = [](float x, int size, int parts) {
-      return std::clamp(static_cast<int>(x) * parts / size, 0, parts - 1);
-    };
-    const int row = part(pixel.y(), camera_.height, kAreaRows);
-    const int column = part(pixel.x(), camera_.width, kAreaColumns);
-    return areas[static_cast<std::size_t>(row * kAreaColumns + column)];
+    return areas[view.cell_of(pixel, kAreaColumns, kAreaRows)];
   };
   for (const Eigen::Vector2f& pixel : frame_.pixels) ++area_of(pixel).keypoints;
   for (const Eigen::Vector2f& pixel : in_view) ++area_of(pixel).points;

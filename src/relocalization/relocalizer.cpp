@@ -145,7 +145,7 @@ class GroupAttempt {
 Relocalizer::Relocalizer(const Camera& camera, const DescriptorTraits& traits,
                          const RelocalizationOptions& options)
     : camera_(camera), traits_(traits), options_(options) {
-  camera_.validate("calibration");
+  camera_.prepare("calibration");
   validate_options("relocalization", options);
 }
 

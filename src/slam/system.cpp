@@ -14,19 +14,23 @@ SystemOptions checked(const SystemOptions& options) {
   return options;
 }
 
+Camera prepared(Camera camera) {
+  camera.prepare("calibration");
+  return camera;
+}
+
 }  // namespace
 
 System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor,
                const SystemOptions& options, FrameCallback on_frame)
-    : camera_(camera),
+    : camera_(prepared(camera)),
       options_(checked(options)),
       extractor_(std::move(extractor)),
       on_frame_(std::move(on_frame)),
-      tracker_(camera, extractor_->traits(), options.tracking),
-      backend_(camera, *extractor_, options_, GiveWay(right_of_way_)),
+      tracker_(camera_, extractor_->traits(), options.tracking),
+      backend_(camera_, *extractor_, options_, GiveWay(right_of_way_)),
       extracted_(static_cast<std::size_t>(options.queued_frames)),
       tasks_(static_cast<std::size_t>(options.queued_keyframes)) {
-  camera_.validate("calibration");
   mapping_ = options_.mode == "slam";
   extractor_->keep_encoder(true);
   if (options_.deterministic) return;

@@ -53,7 +53,7 @@ class Recording {
     RgbdImage image;
     image.index = index;
     image.stamp = frame->stamp;
-    image.color.create(1, sizeof(std::int32_t), CV_8UC1);
+    image.color = cv::Mat::zeros(camera().height, camera().width, CV_8UC1);
     const std::int32_t number = index;
     std::memcpy(image.color.data, &number, sizeof(number));
     image.depth = cv::Mat::zeros(camera().height, camera().width, CV_32FC1);

@@ -71,7 +71,7 @@ RgbdCalibration parse_calibration(const std::string& yaml, const std::string& wh
   CalibrationFields fields;
   read_options_yaml(yaml, where, fields);
   require_intrinsics(yaml, where);
-  fields.validate(where);
+  fields.prepare(where);
   if ((fields.depth_camera.fx == 0.0) != (fields.depth_camera.fy == 0.0)) {
     throw InputError(fmt::format("{}: depth_camera has fx {} and fy {}, expected both or none",
                                  where, fields.depth_camera.fx, fields.depth_camera.fy));

@@ -43,7 +43,7 @@ Camera read_intrinsics(const std::string& path, cv::Size size) {
   camera.cx = k(0, 2);
   camera.cy = k(1, 2);
   camera.fps = kFramesASecond;
-  camera.validate(path);
+  camera.prepare(path);
   return camera;
 }
 

@@ -124,7 +124,7 @@ class ListedSequence : public RgbdSequence {
 
 std::unique_ptr<RgbdSequence> make_sequence(SequenceListing listing) {
   require(!listing.frames.empty(), "a sequence must have frames");
-  listing.camera.validate(listing.calibration_source);
+  listing.camera.prepare(listing.calibration_source);
   auto sequence = std::make_unique<ListedSequence>(std::move(listing));
   sequence->probe();
   return sequence;
