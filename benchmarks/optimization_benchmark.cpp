@@ -6,10 +6,13 @@
 //   ninja -C build/release optimization_benchmark && build/release/optimization_benchmark
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+
 #include "geometry/geometry_scene.h"
 #include "geometry/pnp.h"
 #include "optimization/bundle_engine.h"
 #include "optimization/bundle_test_scene.h"
+#include "optimization/pose_graph.h"
 #include "optimization/pose_optimizer.h"
 
 namespace dxslam {
@@ -20,6 +23,7 @@ BundleScene bundle_scene(const benchmark::State& state) {
   options.poses = static_cast<int>(state.range(0));
   options.points = static_cast<int>(state.range(1));
   options.outlier_share = 0.05;
+  options.observations_per_point = state.range(0) > 100 ? 15 : 5;
   return make_bundle_scene(options);
 }
 
@@ -38,17 +42,18 @@ BENCHMARK(adjust_whole_bundle)
     ->Args({100, 8000})
     ->Unit(benchmark::kMillisecond);
 
-/// Five robust steps from the same start, by either solver.
-void solve_bundle(benchmark::State& state,
-                  BundleStageReport (*solver)(const BundleStage&, BundleState&)) {
+/// Five robust steps, the poses solved for densely (0) or sparsely (1).
+void take_bundle_steps(benchmark::State& state) {
   const BundleScene scene = bundle_scene(state);
-  const BundleOptions options;
+  BundleOptions options;
+  options.min_decrease = 0.0;
   BundleStage stage;
   stage.camera = &scene.camera;
   stage.problem = &scene.problem;
   stage.options = &options;
   stage.active.assign(scene.problem.observations.size(), 1);
   stage.iterations = 5;
+  stage.max_dense_poses = state.range(2) == 0 ? 1000000 : 0;
   BundleState start;
   for (const BundleProblem::Pose& pose : scene.problem.poses) {
     start.camera_from_world.push_back(pose.world_from_camera.inverse());
@@ -57,16 +62,60 @@ void solve_bundle(benchmark::State& state,
   start.points = scene.problem.points;
   for (auto _ : state) {
     BundleState current = start;
-    benchmark::DoNotOptimize(solver(stage, current));
+    benchmark::DoNotOptimize(minimise_bundle(stage, current));
   }
 }
-BENCHMARK_CAPTURE(solve_bundle, own, minimise_with_schur)
-    ->Args({20, 2500})
-    ->Args({100, 8000})
+BENCHMARK(take_bundle_steps)
+    ->ArgsProduct({{20}, {2500}, {0, 1}})
+    ->ArgsProduct({{100}, {8000}, {0, 1}})
+    ->ArgsProduct({{450}, {20000}, {0, 1}})
+    ->ArgsProduct({{1000}, {40000}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(solve_bundle, ceres, minimise_with_ceres)
-    ->Args({20, 2500})
-    ->Args({100, 8000})
+
+/// A camera that goes round a room `laps` times: edges to the nodes before and to those of the lap
+/// before, and odometry that drifts.
+PoseGraph drifted_graph(int nodes, int lap) {
+  SampleSource source(1);
+  std::vector<Sim3> truth;
+  PoseGraph graph;
+  for (int i = 0; i < nodes; ++i) {
+    const double angle = 2.0 * M_PI * i / lap;
+    truth.emplace_back(1.0, so3_exp({0.0, angle, 0.0}),
+                       Eigen::Vector3d(3.0 * std::cos(angle), 0.0, 3.0 * std::sin(angle)));
+    if (i == 0) {
+      graph.nodes.push_back({truth[0], true});
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(i);
+    Vector7d noise;
+    noise << source.tangent(0.003), 0.0;
+    graph.nodes.push_back({graph.nodes[k - 1].world_from_node *
+                           (truth[k - 1].inverse() * truth[k]) * Sim3::exp(noise)});
+    for (const int back : {1, 2, 3, 4, lap - 1, lap, lap + 1}) {
+      if (back > i) continue;
+      const Sim3& other = truth[k - static_cast<std::size_t>(back)];
+      graph.edges.push_back({i - back, i, other.inverse() * truth[k]});
+    }
+  }
+  return graph;
+}
+
+void close_loops(benchmark::State& state) {
+  const PoseGraph start =
+      drifted_graph(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  PoseGraphReport report;
+  for (auto _ : state) {
+    PoseGraph graph = start;
+    report = optimize_pose_graph(graph, PoseGraphOptions());
+    benchmark::DoNotOptimize(report);
+  }
+  state.counters["steps"] = report.iterations;
+  state.counters["final_cost"] = report.final_cost;
+}
+BENCHMARK(close_loops)
+    ->Args({100, 40})
+    ->Args({500, 100})
+    ->Args({2000, 200})
     ->Unit(benchmark::kMillisecond);
 
 void optimize_camera_pose(benchmark::State& state) {

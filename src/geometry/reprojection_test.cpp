@@ -2,15 +2,19 @@
 // Copyright 2026 The dxslam authors
 #include "geometry/reprojection.h"
 
-#include <ceres/jet.h>
 #include <gtest/gtest.h>
+
+#include <unsupported/Eigen/AutoDiff>
 
 #include "geometry/geometry_scene.h"
 
 namespace dxslam {
 namespace {
 
-using Jet = ceres::Jet<double, 6>;
+using Jet = Eigen::AutoDiffScalar<Vector6d>;
+
+/// The k-th of six variables.
+Jet variable(double value, int k) { return {value, 6, k}; }
 
 /// The same projection again, written for any scalar.
 template <class T>
@@ -40,10 +44,10 @@ TEST_F(ReprojectionTest, ProjectsLikeTheCamera) {
 TEST_F(ReprojectionTest, DerivativeByThePointMatchesAutomaticDifferentiation) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d p = sample();
-    const Eigen::Matrix<Jet, 3, 1> jet(Jet(p.x(), 0), Jet(p.y(), 1), Jet(p.z(), 2));
+    const Eigen::Matrix<Jet, 3, 1> jet(variable(p.x(), 0), variable(p.y(), 1), variable(p.z(), 2));
     const Eigen::Matrix<Jet, 3, 1> result = project(camera_, jet);
     Eigen::Matrix3d expected;
-    for (int r = 0; r < 3; ++r) expected.row(r) = result(r).v.head<3>();
+    for (int r = 0; r < 3; ++r) expected.row(r) = result(r).derivatives().head<3>();
     EXPECT_LT((project_stereo_jacobian(camera_, p) - expected).norm(), 1e-10 * expected.norm());
   }
 }
@@ -52,13 +56,13 @@ TEST_F(ReprojectionTest, DerivativeByThePoseMatchesAutomaticDifferentiation) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d p = sample();
     // exp(delta) p to first order, which is all that a derivative at zero sees.
-    const Eigen::Matrix<Jet, 3, 1> rho(Jet(0.0, 0), Jet(0.0, 1), Jet(0.0, 2));
-    const Eigen::Matrix<Jet, 3, 1> phi(Jet(0.0, 3), Jet(0.0, 4), Jet(0.0, 5));
+    const Eigen::Matrix<Jet, 3, 1> rho(variable(0.0, 0), variable(0.0, 1), variable(0.0, 2));
+    const Eigen::Matrix<Jet, 3, 1> phi(variable(0.0, 3), variable(0.0, 4), variable(0.0, 5));
     const Eigen::Matrix<Jet, 3, 1> fixed = p.cast<Jet>();
     const Eigen::Matrix<Jet, 3, 1> moved = fixed + phi.cross(fixed) + rho;
     const Eigen::Matrix<Jet, 3, 1> result = project(camera_, moved);
     Eigen::Matrix<double, 3, 6> expected;
-    for (int r = 0; r < 3; ++r) expected.row(r) = result(r).v;
+    for (int r = 0; r < 3; ++r) expected.row(r) = result(r).derivatives();
     const Eigen::Matrix<double, 3, 6> jacobian =
         left_perturbation_jacobian<3>(project_stereo_jacobian(camera_, p), p);
     EXPECT_LT((jacobian - expected).norm(), 1e-10 * expected.norm());

@@ -8,12 +8,10 @@
 
 #include "core/error.h"
 #include "optimization/bundle_engine.h"
+#include "optimization/huber.h"
 
 namespace dxslam {
 namespace {
-
-// Up to here the dense reduced system of the own solver beats Ceres.
-constexpr int kMaxLocalPoses = 400;
 
 void check_indices(const BundleProblem& problem) {
   const auto inside = [](int index, std::size_t size) {
@@ -87,20 +85,14 @@ std::vector<char> classify(const BundleStage& stage, const BundleState& state) {
 double robust_cost(const BundleStage& stage, const BundleState& state,
                    const std::vector<char>& mask) {
   double sum = 0.0;
+  double weight = 1.0;
   for (std::size_t i = 0; i < mask.size(); ++i) {
     if (mask[i] == 0) continue;
     const BundleProblem::Observation& o = stage.problem->observations[i];
     const double error2 = bundle_residual(*stage.camera, o, in_camera(state, o)).squaredNorm();
-    const double gate2 = bundle_gate2(o, *stage.options);
-    sum += error2 <= gate2 ? error2 : 2.0 * std::sqrt(gate2 * error2) - gate2;
+    sum += huber(error2, bundle_gate2(o, *stage.options), weight);
   }
   return 0.5 * sum;
-}
-
-BundleStageReport minimise(const BundleStage& stage, BundleState& state) {
-  const auto free_poses = std::count(stage.held.begin(), stage.held.end(), 0);
-  return free_poses <= kMaxLocalPoses ? minimise_with_schur(stage, state)
-                                      : minimise_with_ceres(stage, state);
 }
 
 /// Both stages from `state` on. The first stage's result stands where the second one, which has
@@ -108,7 +100,7 @@ BundleStageReport minimise(const BundleStage& stage, BundleState& state) {
 void minimise(BundleStage& stage, BundleState& state, BundleReport& report) {
   const std::vector<char> considered = stage.active;
   report.initial_cost = report.final_cost = robust_cost(stage, state, considered);
-  const BundleStageReport first = minimise(stage, state);
+  const DescentReport first = minimise_bundle(stage, state);
   report.iterations = first.iterations;
   report.cancelled = first.cancelled;
   if (!first.usable) return;
@@ -119,7 +111,7 @@ void minimise(BundleStage& stage, BundleState& state, BundleReport& report) {
     stage.robust = false;
     stage.iterations = stage.options->refine_iterations;
     BundleState refined = state;
-    const BundleStageReport second = minimise(stage, refined);
+    const DescentReport second = minimise_bundle(stage, refined);
     report.iterations += second.iterations;
     report.cancelled = second.cancelled;
     if (second.cancelled) return;

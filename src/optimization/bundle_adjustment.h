@@ -35,7 +35,6 @@ struct BundleOptions {
   double min_decrease = 1e-6;
   double chi2_pixel = 5.991;
   double chi2_depth = 7.815;
-  int threads = 1;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -48,8 +47,6 @@ struct BundleOptions {
           "gate of an observation without depth");
     visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2",
           "gate of an observation with depth");
-    visit("threads", self.threads, {1, 64}, "threads",
-          "threads of the solver; results do not depend on it with 1");
   }
 };
 
@@ -59,7 +56,7 @@ struct BundleReport {
   int iterations = 0;
   double initial_cost = 0.0;
   double final_cost = 0.0;
-  std::vector<char> inlier;  ///< one an observation, by the gates at the solution
+  std::vector<char> inlier;  ///< one per observation, by the gates at the solution
 };
 
 /// Bundle adjustment over all poses not fixed and all points: robust (Huber) first, then refined

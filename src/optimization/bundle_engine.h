@@ -8,10 +8,11 @@
 #include "core/se3.h"
 #include "geometry/reprojection.h"
 #include "optimization/bundle_adjustment.h"
+#include "optimization/levenberg_marquardt.h"
 
 namespace dxslam {
 
-// What the solvers behind adjust_bundle have in common. Internal to this layer.
+// The solver behind adjust_bundle. Internal to this layer.
 
 /// The unknowns of a bundle problem.
 struct BundleState {
@@ -24,17 +25,14 @@ struct BundleStage {
   const Camera* camera = nullptr;
   const BundleProblem* problem = nullptr;  ///< observations only; poses and points are in the state
   const BundleOptions* options = nullptr;
-  std::vector<char> active;  ///< one an observation
+  std::vector<char> active;  ///< one per observation
   std::vector<char> held;    ///< one per pose
   bool robust = true;        ///< Huber kernel whose width is the gate of the observation
   int iterations = 0;
   MayGoOn may_go_on;
-};
-
-struct BundleStageReport {
-  bool usable = false;     ///< the state is finite and of no higher cost than at the start
-  bool cancelled = false;  ///< it might not go on; the state is then of no use
-  int iterations = 0;
+  /// With more free poses the system that is left after the points were eliminated is sparse;
+  /// else its memory grows with the square and its time with the cube of their number.
+  int max_dense_poses = 400;
 };
 
 inline bool has_depth(const BundleProblem::Observation& o) { return o.disparity > 0.0; }
@@ -55,20 +53,7 @@ inline Eigen::Vector3d bundle_residual(const Camera& camera, const BundleProblem
   return r;
 }
 
-/// Derivative of bundle_residual by the point in the camera frame.
-inline Eigen::Matrix3d bundle_jacobian(const Camera& camera, const BundleProblem::Observation& o,
-                                       const Eigen::Vector3d& in_camera) {
-  if (!(in_camera.z() > kMinProjectionDepth)) return Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d j = project_stereo_jacobian(camera, in_camera) / o.sigma;
-  if (!has_depth(o)) j.row(2).setZero();
-  return j;
-}
-
-/// Minimises by Ceres; any size. Bit-identical over repeats if options.threads is 1.
-BundleStageReport minimise_with_ceres(const BundleStage& stage, BundleState& state);
-
-/// Minimises by the own solver, in one thread whatever options.threads says; memory grows with the
-/// square and time with the cube of the free poses. Always bit-identical over repeats.
-BundleStageReport minimise_with_schur(const BundleStage& stage, BundleState& state);
+/// Minimises in one thread; bit-identical over repeats.
+DescentReport minimise_bundle(const BundleStage& stage, BundleState& state);
 
 }  // namespace dxslam

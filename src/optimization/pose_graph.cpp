@@ -2,97 +2,20 @@
 // Copyright 2026 The dxslam authors
 #include "optimization/pose_graph.h"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <deque>
-#include <memory>
 #include <utility>
 
 #include "core/error.h"
-#include "optimization/quiet_log.h"
-#include "optimization/stop_callback.h"
+#include "optimization/huber.h"
+#include "optimization/levenberg_marquardt.h"
+#include "optimization/sparse_blocks.h"
 
 namespace dxslam {
 namespace {
 
-// Ambient layout of a node: qx qy qz qw tx ty tz scale.
-using NodeBlock = std::array<double, 8>;
-
-Sim3 to_node(const double* block) {
-  return {block[7], Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(block)),
-          Eigen::Map<const Eigen::Vector3d>(block + 4)};
-}
-
-void to_block(const Sim3& node, double* block) {
-  Eigen::Map<Eigen::Vector4d>{block} = node.rotation().coeffs();
-  Eigen::Map<Eigen::Vector3d>{block + 4} = node.translation();
-  block[7] = node.scale();
-}
-
-// Perturbation from the right, node * exp(delta). The cost function gives its derivative by
-// (rho, phi, sigma) in the first seven ambient columns, so the "Jacobian of plus" only drops the
-// eighth, and the seventh as well where the scale is held.
-template <int Tangent>
-class RightPerturbation final : public ceres::Manifold {
- public:
-  int AmbientSize() const override { return 8; }
-  int TangentSize() const override { return Tangent; }
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
-    Vector7d step = Vector7d::Zero();
-    step.head<Tangent>() = Eigen::Map<const Eigen::Matrix<double, Tangent, 1>>(delta);
-    to_block(to_node(x) * Sim3::exp(step), x_plus_delta);
-    return true;
-  }
-  bool PlusJacobian(const double*, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, 8, Tangent, Eigen::RowMajor>>(jacobian).setIdentity();
-    return true;
-  }
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
-    const Vector7d difference = (to_node(x).inverse() * to_node(y)).log();
-    Eigen::Map<Eigen::Matrix<double, Tangent, 1>>{y_minus_x} = difference.head<Tangent>();
-    return true;
-  }
-  bool MinusJacobian(const double*, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, Tangent, 8, Eigen::RowMajor>>(jacobian).setIdentity();
-    return true;
-  }
-};
-
-class EdgeError final : public ceres::SizedCostFunction<7, 8, 8> {
- public:
-  explicit EdgeError(const PoseGraph::Edge& edge) : b_from_a_(edge.a_from_b.inverse()) {
-    const Eigen::LLT<Matrix7d> factor(edge.information);
-    require(edge.information.allFinite() && factor.info() == Eigen::Success,
-            "the information of a pose graph edge is not positive definite");
-    root_ = factor.matrixU();
-  }
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Sim3 a_from_b = to_node(parameters[0]).inverse() * to_node(parameters[1]);
-    const Vector7d error = (b_from_a_ * a_from_b).log();
-    Eigen::Map<Vector7d>{residuals} = root_ * error;
-    if (jacobians == nullptr) return true;
-    const Matrix7d by_b = root_ * sim3_right_jacobian_inverse(error);
-    if (jacobians[0] != nullptr) write(-by_b * a_from_b.inverse().adjoint(), jacobians[0]);
-    if (jacobians[1] != nullptr) write(by_b, jacobians[1]);
-    return true;
-  }
-
- private:
-  static void write(const Matrix7d& by_tangent, double* jacobian) {
-    Eigen::Map<Eigen::Matrix<double, 7, 8, Eigen::RowMajor>> ambient(jacobian);
-    ambient.leftCols<7>() = by_tangent;
-    ambient.rightCols<1>().setZero();
-  }
-
-  Sim3 b_from_a_;
-  Matrix7d root_;  ///< root^T root = information
-};
+constexpr double kMinDecrease = 1e-9;   // share of the cost that a step must gain
+constexpr double kTinyDiagonal = 1e-9;  // keeps directions without any constraint solvable
 
 void check_edges(const PoseGraph& graph) {
   const auto inside = [&](int node) {
@@ -101,105 +24,197 @@ void check_edges(const PoseGraph& graph) {
   for (const PoseGraph::Edge& edge : graph.edges) {
     require(inside(edge.a) && inside(edge.b), "pose graph edge of a node that is not there");
     require(edge.a != edge.b, "pose graph edge from a node to itself");
+    require(edge.information.allFinite() &&
+                Eigen::LLT<Matrix7d>(edge.information).info() == Eigen::Success,
+            "the information of a pose graph edge is not positive definite");
   }
-}
-
-/// Owns all that the ceres::Problem points to.
-class Model {
- public:
-  Model(const PoseGraph& graph, const PoseGraphOptions& options)
-      : blocks_(graph.nodes.size()), problem_(problem_options()) {
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      to_block(graph.nodes[i].world_from_node, blocks_[i].data());
-    }
-    if (options.huber > 0.0) loss_ = std::make_unique<ceres::HuberLoss>(options.huber);
-    for (const PoseGraph::Edge& edge : graph.edges) {
-      problem_.AddResidualBlock(&errors_.emplace_back(edge), loss_.get(), block(edge.a),
-                                block(edge.b));
-    }
-    const bool any_fixed = std::any_of(graph.nodes.begin(), graph.nodes.end(),
-                                       [](const PoseGraph::Node& node) { return node.fixed; });
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      double* node = blocks_[i].data();
-      if (!problem_.HasParameterBlock(node)) continue;
-      problem_.SetManifold(node, options.with_scale ? static_cast<ceres::Manifold*>(&similar_)
-                                                    : static_cast<ceres::Manifold*>(&rigid_));
-      const bool held = any_fixed ? graph.nodes[i].fixed : i == 0;
-      if (held) problem_.SetParameterBlockConstant(node);
-    }
-  }
-
-  ceres::Problem& problem() { return problem_; }
-  Sim3 node(std::size_t i) const { return to_node(blocks_[i].data()); }
-  /// Whether the solver may have moved the node.
-  bool is_free(std::size_t i) const {
-    const double* node = blocks_[i].data();
-    return problem_.HasParameterBlock(node) && !problem_.IsParameterBlockConstant(node);
-  }
-
- private:
-  static ceres::Problem::Options problem_options() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    return options;
-  }
-  double* block(int node) { return blocks_[static_cast<std::size_t>(node)].data(); }
-
-  std::vector<NodeBlock> blocks_;
-  std::deque<EdgeError> errors_;
-  std::unique_ptr<ceres::LossFunction> loss_;
-  RightPerturbation<6> rigid_;
-  RightPerturbation<7> similar_;
-  ceres::Problem problem_;
-};
-
-ceres::Solver::Options solver_options(const PoseGraphOptions& options) {
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  solver.dense_linear_algebra_library_type = ceres::EIGEN;
-  solver.max_num_iterations = options.iterations;
-  solver.num_threads = options.threads;
-  solver.function_tolerance = 1e-9;
-  solver.logging_type = ceres::SILENT;
-  return solver;
 }
 
 bool finite(const Sim3& s) { return s.matrix().allFinite() && s.scale() > 0.0; }
+
+/// What descend() asks for. A free node moves by a perturbation from the right, node * exp(delta);
+/// Tangent is 6 where its scale is held, else 7.
+template <int Tangent>
+class GraphProblem {
+ public:
+  GraphProblem(const PoseGraph& graph, const std::vector<int>& slots, int free_nodes, double huber)
+      : edges_(graph.edges),
+        slots_(slots),
+        huber_(huber),
+        system_(Tangent, free_nodes, coupled(graph.edges, slots)),
+        gradient_(Tangent * free_nodes),
+        diagonal_(Tangent * free_nodes),
+        step_(Tangent * free_nodes) {
+    for (const PoseGraph::Node& node : graph.nodes) state_.push_back(node.world_from_node);
+    for (const PoseGraph::Edge& edge : edges_) b_from_a_.push_back(edge.a_from_b.inverse());
+    for (int i = 0; i < free_nodes; ++i) diagonal_places_.push_back(system_.place(i, i));
+  }
+
+  const std::vector<Sim3>& state() const { return state_; }
+
+  double linearise() {
+    system_.set_zero();
+    gradient_.setZero();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < edges_.size(); ++i) sum += linearise(i);
+    for (std::size_t i = 0; i < diagonal_places_.size(); ++i) {
+      diagonal_.segment<Tangent>(at(static_cast<int>(i))) =
+          system_.block(diagonal_places_[i]).diagonal();
+    }
+    return 0.5 * sum;
+  }
+
+  double propose(double damping) {
+    const Eigen::VectorXd damped =
+        (1.0 + damping) * diagonal_ + Eigen::VectorXd::Constant(diagonal_.size(), kTinyDiagonal);
+    for (std::size_t i = 0; i < diagonal_places_.size(); ++i) {
+      system_.block(diagonal_places_[i]).diagonal() =
+          damped.segment<Tangent>(at(static_cast<int>(i)));
+    }
+    step_ = -gradient_;
+    if (!system_.solve(step_) || !step_.allFinite()) return -1.0;
+    trial_ = state_;
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      if (slots_[i] < 0) continue;
+      Vector7d delta = Vector7d::Zero();
+      delta.head<Tangent>() = step_.segment<Tangent>(at(slots_[i]));
+      trial_[i] = state_[i] * Sim3::exp(delta);
+    }
+    return 0.5 * (damping * step_.cwiseAbs2().dot(diagonal_) - step_.dot(gradient_));
+  }
+
+  double trial_cost() const {
+    double sum = 0.0;
+    double weight = 1.0;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const Vector7d error = (b_from_a_[i] * a_from_b(trial_, edges_[i])).log();
+      sum += kernel(error.dot(edges_[i].information * error), weight);
+    }
+    return 0.5 * sum;
+  }
+
+  void accept() { std::swap(state_, trial_); }
+
+ private:
+  using Block = Eigen::Matrix<double, Tangent, Tangent>;
+
+  static Eigen::Index at(int slot) { return static_cast<Eigen::Index>(Tangent) * slot; }
+
+  static std::vector<std::pair<int, int>> coupled(const std::vector<PoseGraph::Edge>& edges,
+                                                  const std::vector<int>& slots) {
+    std::vector<std::pair<int, int>> pairs;
+    for (const PoseGraph::Edge& edge : edges) {
+      const int a = slots[static_cast<std::size_t>(edge.a)];
+      const int b = slots[static_cast<std::size_t>(edge.b)];
+      if (a >= 0 && b >= 0) pairs.emplace_back(std::max(a, b), std::min(a, b));
+    }
+    return pairs;
+  }
+
+  static Sim3 a_from_b(const std::vector<Sim3>& state, const PoseGraph::Edge& edge) {
+    return state[static_cast<std::size_t>(edge.a)].inverse() *
+           state[static_cast<std::size_t>(edge.b)];
+  }
+
+  double kernel(double error2, double& weight) const {
+    weight = 1.0;
+    return huber_ > 0.0 ? huber(error2, huber_ * huber_, weight) : error2;
+  }
+
+  double linearise(std::size_t i) {
+    const PoseGraph::Edge& edge = edges_[i];
+    const Sim3 a_from_b = this->a_from_b(state_, edge);
+    const Vector7d error = (b_from_a_[i] * a_from_b).log();
+    const Vector7d pull = edge.information * error;
+    double weight = 1.0;
+    const double cost = kernel(error.dot(pull), weight);
+
+    const Matrix7d whole = sim3_right_jacobian_inverse(error);
+    const Eigen::Matrix<double, 7, Tangent> by_b = whole.leftCols<Tangent>();
+    const Eigen::Matrix<double, 7, Tangent> by_a =
+        -(whole * a_from_b.inverse().adjoint()).template leftCols<Tangent>();
+    const Eigen::Matrix<double, 7, Tangent> weighted_a = weight * edge.information * by_a;
+    const Eigen::Matrix<double, 7, Tangent> weighted_b = weight * edge.information * by_b;
+    const int a = slots_[static_cast<std::size_t>(edge.a)];
+    const int b = slots_[static_cast<std::size_t>(edge.b)];
+    if (a >= 0) add(a, a, by_a.transpose() * weighted_a);
+    if (b >= 0) add(b, b, by_b.transpose() * weighted_b);
+    if (a >= 0 && b >= 0 && a > b) add(a, b, by_a.transpose() * weighted_b);
+    if (a >= 0 && b >= 0 && a < b) add(b, a, by_b.transpose() * weighted_a);
+    if (a >= 0) gradient_.segment<Tangent>(at(a)) += weight * by_a.transpose() * pull;
+    if (b >= 0) gradient_.segment<Tangent>(at(b)) += weight * by_b.transpose() * pull;
+    return cost;
+  }
+
+  void add(int row, int column, const Block& block) {
+    system_.block(system_.place(row, column)) += block;
+  }
+
+  const std::vector<PoseGraph::Edge>& edges_;
+  const std::vector<int>& slots_;  ///< one per node: place among the free ones, or -1
+  double huber_;
+  std::vector<Sim3> b_from_a_;  ///< measured, one an edge
+  std::vector<Sim3> state_;     ///< world_from_node
+  std::vector<Sim3> trial_;
+  SparseBlocks system_;
+  std::vector<int> diagonal_places_;
+  Eigen::VectorXd gradient_;
+  Eigen::VectorXd diagonal_;  ///< of the normal equations, without damping
+  Eigen::VectorXd step_;
+};
+
+/// Place of each node among the free ones, -1 for those that are held or have no edge.
+std::vector<int> number_free_nodes(const PoseGraph& graph, int& count) {
+  std::vector<int> slots(graph.nodes.size(), -1);
+  for (const PoseGraph::Edge& edge : graph.edges) {
+    slots[static_cast<std::size_t>(edge.a)] = slots[static_cast<std::size_t>(edge.b)] = 0;
+  }
+  const bool any_fixed = std::any_of(graph.nodes.begin(), graph.nodes.end(),
+                                     [](const PoseGraph::Node& node) { return node.fixed; });
+  count = 0;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (any_fixed ? graph.nodes[i].fixed : i == 0) slots[i] = -1;
+    if (slots[i] >= 0) slots[i] = count++;
+  }
+  return slots;
+}
+
+template <int Tangent>
+PoseGraphReport optimize(PoseGraph& graph, const PoseGraphOptions& options,
+                         const MayGoOn& may_go_on) {
+  int free_nodes = 0;
+  const std::vector<int> slots = number_free_nodes(graph, free_nodes);
+  GraphProblem<Tangent> problem(graph, slots, free_nodes, options.huber);
+  const DescentReport descent = descend(problem, options.iterations, kMinDecrease, may_go_on);
+
+  PoseGraphReport report;
+  report.cancelled = descent.cancelled;
+  report.iterations = descent.iterations;
+  report.initial_cost = descent.initial_cost;
+  report.final_cost = descent.final_cost;
+  if (!descent.usable) return report;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i] >= 0 && !finite(problem.state()[i])) return report;
+  }
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i] >= 0) graph.nodes[i].world_from_node = problem.state()[i];
+  }
+  report.usable = true;
+  return report;
+}
 
 }  // namespace
 
 PoseGraphReport optimize_pose_graph(PoseGraph& graph, const PoseGraphOptions& options,
                                     const MayGoOn& may_go_on) {
   check_edges(graph);
-  PoseGraphReport report;
-  Model model(graph, options);
-  report.cancelled = must_stop(may_go_on);
-  if (report.cancelled) return report;
-
-  ceres::Solver::Options solver = solver_options(options);
-  StopCallback callback(may_go_on);
-  solver.callbacks.push_back(&callback);
-  ceres::Solver::Summary summary;
-  const QuietLog quiet;
-  ceres::Solve(solver, &model.problem(), &summary);
-
-  report.cancelled = summary.termination_type == ceres::USER_FAILURE;
-  report.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  report.initial_cost = summary.initial_cost;
-  report.final_cost = summary.final_cost;
-  if (report.cancelled || !summary.IsSolutionUsable()) return report;
-  std::vector<PoseGraph::Node> nodes = graph.nodes;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (!model.is_free(i)) continue;
-    nodes[i].world_from_node = model.node(i);
-    if (!finite(nodes[i].world_from_node)) return report;
+  if (must_stop(may_go_on)) {
+    PoseGraphReport report;
+    report.cancelled = true;
+    return report;
   }
-  graph.nodes = std::move(nodes);
-  report.usable = true;
-  return report;
+  return options.with_scale ? optimize<7>(graph, options, may_go_on)
+                            : optimize<6>(graph, options, may_go_on);
 }
 
 }  // namespace dxslam

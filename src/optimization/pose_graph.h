@@ -31,15 +31,12 @@ struct PoseGraphOptions {
   int iterations = 20;
   bool with_scale = false;  // RGB-D maps do not drift in scale
   double huber = 0.0;       // 0: no kernel
-  int threads = 1;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("iterations", self.iterations, {1, 1000}, "steps", "most steps");
     visit("with_scale", self.with_scale, "", "whether nodes may change their scale");
     visit("huber", self.huber, {0, 1000}, "sigma", "width of the kernel of an edge, 0 for none");
-    visit("threads", self.threads, {1, 64}, "threads",
-          "threads of the solver; results do not depend on it with 1");
   }
 };
 

@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
 #include "core/error.h"
 #include "core/options.h"
 #include "core/transform_samples.h"
+#include "optimization/test_least_squares.h"
 
 namespace dxslam {
 namespace {
@@ -127,6 +129,91 @@ TEST(PoseGraph, KernelLimitsTheHarmOfAWrongLoop) {
   ASSERT_TRUE(optimize_pose_graph(robust, options).usable);
   EXPECT_GT(worst_error(scene, plain), 0.5);
   EXPECT_LT(worst_error(scene, robust), 0.2);
+}
+
+/// Nodes all over the place with edges that contradict each other, of different weights, and one
+/// that is far off.
+PoseGraph make_contradiction(std::uint32_t seed) {
+  SampleSource source(seed);
+  PoseGraph graph;
+  for (int i = 0; i < 8; ++i) {
+    Vector7d tangent;
+    tangent << source.tangent(1.0), source.uniform(-0.2, 0.2);
+    graph.nodes.push_back({Sim3::exp(tangent), i == 2});
+  }
+  for (int i = 0; i < 8; ++i) {
+    for (const int step : {1, 3}) {
+      const int next = (i + step) % 8;
+      Vector7d noise;
+      noise << source.tangent(0.1), source.uniform(-0.1, 0.1);
+      const Sim3 a_from_b = graph.nodes[static_cast<std::size_t>(i)].world_from_node.inverse() *
+                            graph.nodes[static_cast<std::size_t>(next)].world_from_node;
+      Matrix7d root = Matrix7d::Identity() * source.uniform(5.0, 20.0);
+      root(0, 4) = source.uniform(-3.0, 3.0);
+      graph.edges.push_back({i, next, a_from_b * Sim3::exp(noise), root.transpose() * root});
+    }
+  }
+  graph.edges[5].a_from_b = graph.edges[5].a_from_b * Sim3::exp(Vector7d::Constant(0.3));
+  for (PoseGraph::Node& node : graph.nodes) {
+    Vector7d noise;
+    noise << source.tangent(0.2), 0.0;
+    if (!node.fixed) node.world_from_node = node.world_from_node * Sim3::exp(noise);
+  }
+  return graph;
+}
+
+TEST(PoseGraph, FindsTheMinimumThatMinpackFinds) {
+  for (const bool with_scale : {false, true}) {
+    for (const double huber : {0.0, 2.0}) {
+      const PoseGraph start = make_contradiction(7);
+      const Eigen::Index tangent = with_scale ? 7 : 6;
+      const auto moved = [&](const Eigen::VectorXd& delta) {
+        std::vector<Sim3> nodes;
+        Eigen::Index next = 0;
+        for (const PoseGraph::Node& node : start.nodes) {
+          nodes.push_back(node.world_from_node);
+          if (node.fixed) continue;
+          Vector7d step = Vector7d::Zero();
+          step.head(tangent) = delta.segment(next, tangent);
+          nodes.back() = nodes.back() * Sim3::exp(step);
+          next += tangent;
+        }
+        return nodes;
+      };
+      const auto residuals = [&](const Eigen::VectorXd& delta, Eigen::VectorXd& r) {
+        const std::vector<Sim3> nodes = moved(delta);
+        for (std::size_t i = 0; i < start.edges.size(); ++i) {
+          const PoseGraph::Edge& edge = start.edges[i];
+          const Sim3 apart = edge.a_from_b.inverse() *
+                             nodes[static_cast<std::size_t>(edge.a)].inverse() *
+                             nodes[static_cast<std::size_t>(edge.b)];
+          const Matrix7d root = edge.information.llt().matrixU();
+          const Vector7d error = root * apart.log();
+          const double scale = huber > 0.0 ? huber_scale(error.squaredNorm(), huber * huber) : 1.0;
+          r.segment<7>(7 * static_cast<Eigen::Index>(i)) = scale * error;
+        }
+      };
+      const auto count = static_cast<Eigen::Index>(7 * start.edges.size());
+      const Eigen::VectorXd minimum = minimise_by_minpack(7 * tangent, count, residuals);
+      const std::vector<Sim3> expected = moved(minimum);
+      Eigen::VectorXd r(count);
+      residuals(minimum, r);
+
+      PoseGraph graph = start;
+      PoseGraphOptions options;
+      options.iterations = 200;
+      options.with_scale = with_scale;
+      options.huber = huber;
+      const PoseGraphReport report = optimize_pose_graph(graph, options);
+      ASSERT_TRUE(report.usable);
+      EXPECT_LT(report.final_cost, 0.5 * report.initial_cost);
+      EXPECT_NEAR(report.final_cost, 0.5 * r.squaredNorm(), 1e-6 * report.final_cost);
+      for (std::size_t i = 0; i < expected.size(); ++i) {
+        const Sim3 apart = graph.nodes[i].world_from_node.inverse() * expected[i];
+        EXPECT_LT(apart.log().norm(), 1e-3) << i;
+      }
+    }
+  }
 }
 
 TEST(PoseGraph, HoldsTheFirstNodeIfNoneIsFixed) {

@@ -2,8 +2,6 @@
 // Copyright 2026 The dxslam authors
 #include "optimization/pose_optimizer.h"
 
-#include <ceres/ceres.h>
-#include <ceres/rotation.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -12,6 +10,7 @@
 
 #include "core/options.h"
 #include "geometry/geometry_scene.h"
+#include "optimization/test_least_squares.h"
 
 namespace dxslam {
 namespace {
@@ -48,57 +47,31 @@ SE3 nearby(SampleSource& source, const SE3& pose, double extent) {
   return pose * SE3::exp(source.tangent(extent));
 }
 
-/// The same residual for Ceres, by automatic differentiation: angle-axis and translation of
-/// camera_from_world.
-struct OracleResidual {
-  Camera camera;
-  PoseObservation observation;
-
-  template <class T>
-  bool operator()(const T* pose, T* residual) const {
-    const T x[3] = {T(observation.point_in_world.x()), T(observation.point_in_world.y()),
-                    T(observation.point_in_world.z())};
-    T p[3];
-    ceres::AngleAxisRotatePoint(pose, x, p);
-    for (int k = 0; k < 3; ++k) p[k] += pose[3 + k];
-    const T u = camera.fx * p[0] / p[2] + camera.cx;
-    const T v = camera.fy * p[1] / p[2] + camera.cy;
-    residual[0] = (u - observation.pixel.x()) / observation.sigma;
-    residual[1] = (v - observation.pixel.y()) / observation.sigma;
-    residual[2] = T(0.0);
-    if (observation.disparity > 0.0) {
-      const T right = u - camera.bf() / p[2];
-      residual[2] = (right - observation.pixel.x() + observation.disparity) / observation.sigma;
-    }
-    return true;
-  }
-};
-
+/// The least-squares minimum over the observations in use, by MINPACK; huber: width of the kernel,
+/// 0 for none.
 SE3 oracle(const SE3& start, const std::vector<PoseObservation>& observations,
            const std::vector<char>& use, double huber) {
+  const Camera camera = test_camera();
   const SE3 camera_from_world = start.inverse();
-  double pose[6];
-  Eigen::Map<Eigen::Vector3d>{pose} = so3_log(camera_from_world.rotation());
-  Eigen::Map<Eigen::Vector3d>{pose + 3} = camera_from_world.translation();
-  ceres::Problem problem;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (use[i] == 0) continue;
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<OracleResidual, 3, 6>(
-                                 new OracleResidual{test_camera(), observations[i]}),
-                             huber > 0.0 ? new ceres::HuberLoss(huber) : nullptr, pose);
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-16;
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-14;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  const Eigen::Vector3d phi = Eigen::Map<const Eigen::Vector3d>(pose);
-  const Eigen::Vector3d t = Eigen::Map<const Eigen::Vector3d>(pose + 3);
-  return SE3(so3_exp(phi), t).inverse();
+  const auto residuals = [&](const Eigen::VectorXd& delta, Eigen::VectorXd& r) {
+    const SE3 pose = SE3::exp(Vector6d(delta)) * camera_from_world;
+    r.setZero();
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      if (use[i] == 0) continue;
+      const PoseObservation& o = observations[i];
+      const Eigen::Vector3d p = pose * o.point_in_world;
+      const double u = camera.fx * p.x() / p.z() + camera.cx;
+      const double v = camera.fy * p.y() / p.z() + camera.cy;
+      Eigen::Vector3d part(u - o.pixel.x(), v - o.pixel.y(), 0.0);
+      if (o.disparity > 0.0) part.z() = u - camera.bf() / p.z() - o.pixel.x() + o.disparity;
+      part /= o.sigma;
+      const double scale = huber > 0.0 ? huber_scale(part.squaredNorm(), huber * huber) : 1.0;
+      r.segment<3>(3 * static_cast<Eigen::Index>(i)) = scale * part;
+    }
+  };
+  const Vector6d delta =
+      minimise_by_minpack(6, 3 * static_cast<Eigen::Index>(observations.size()), residuals);
+  return (SE3::exp(delta) * camera_from_world).inverse();
 }
 
 TEST(PoseOptimizer, RecoversAnExactPose) {
@@ -135,7 +108,7 @@ TEST(PoseOptimizer, EndsAtTheLeastSquaresMinimumOfItsInliers) {
   }
 }
 
-TEST(PoseOptimizer, AgreesWithCeresUnderTheKernel) {
+TEST(PoseOptimizer, AgreesWithMinpackUnderTheKernel) {
   SampleSource source(3);
   for (int i = 0; i < 10; ++i) {
     const PoseScene scene = make_scene(source, 100, 0.2, 1.0);

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 //
-// Levenberg-Marquardt for small bundles. Points are eliminated one by one in blocks of fixed size
-// and the poses are solved for densely, so that nothing is allocated, indexed or virtual in the
-// inner loops (Triggs et al., Bundle Adjustment - A Modern Synthesis, section 6, 1999).
+// Levenberg-Marquardt for bundles. Points are eliminated one by one in blocks of fixed size, so
+// that nothing is allocated or virtual in the inner loops; the poses are solved for densely, or
+// sparsely where they are many (Triggs et al., Bundle Adjustment - A Modern Synthesis, section 6,
+// 1999).
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/simd.h"
 #include "optimization/bundle_engine.h"
+#include "optimization/huber.h"
+#include "optimization/sparse_blocks.h"
 
 namespace dxslam {
 namespace {
@@ -38,27 +43,25 @@ DXSLAM_INLINE_KERNEL void subtract_outer(const Block63& s, const Block63& t, Blo
 }
 
 /// Fill-in between all poses that see one point: for each pair of links the block of the lower
-/// triangle. Links without a slot (negative) are of poses that are held.
+/// triangle. Links without a slot (negative) are of poses that are held. `places` tells by
+/// triangle() where the block is; null if just there.
 DXSLAM_INLINE_KERNEL void couple(const int* slots, const Block63* scaled, int count,
-                                 Block66* reduced) {
+                                 const int* places, Block66* reduced) {
   for (int i = 0; i < count; ++i) {
     if (slots[i] < 0) continue;
     const auto a = static_cast<std::size_t>(slots[i]);
     for (int j = 0; j <= i; ++j) {
       if (slots[j] < 0) continue;
       const auto b = static_cast<std::size_t>(slots[j]);
-      if (a >= b) subtract_outer(scaled[i], scaled[j], reduced[triangle(a, b)]);
+      std::size_t place = a < b ? triangle(b, a) : triangle(a, b);
+      if (places != nullptr) place = static_cast<std::size_t>(places[place]);
+      if (a >= b) subtract_outer(scaled[i], scaled[j], reduced[place]);
       // Both halves where one pose sees the point twice.
-      if (a < b || (a == b && i != j)) {
-        subtract_outer(scaled[j], scaled[i], reduced[triangle(b, a)]);
-      }
+      if (a < b || (a == b && i != j)) subtract_outer(scaled[j], scaled[i], reduced[place]);
     }
   }
 }
 
-constexpr double kInitialDamping = 1e-4;  // share of the diagonal of the normal equations
-constexpr double kMinDamping = 1e-9;
-constexpr double kMaxDamping = 1e8;     // beyond it no step can help any more
 constexpr double kTinyDiagonal = 1e-9;  // keeps directions without any constraint solvable
 
 /// An observation that takes part, laid out for the sweep over points.
@@ -103,53 +106,62 @@ bool factorise(const Eigen::Matrix3d& a, double damping, Eigen::Matrix3d& l) {
   return true;
 }
 
+/// What descend() asks for.
 class SchurSolver {
  public:
   SchurSolver(const BundleStage& stage, BundleState& state) : stage_(stage), state_(state) {
     collect_poses();
     collect_points();
     const auto size = static_cast<Eigen::Index>(6 * poses_.size());
-    reduced_.resize(size, size);
     pose_step_.resize(size);
     cross_.resize(links_.size());
     scaled_.resize(links_.size(), Block63{});
     for (const Link& link : links_) link_slots_.push_back(link.slot);
-    blocks_.resize(poses_.size() * (poses_.size() + 1) / 2);
+    if (poses_.size() > static_cast<std::size_t>(stage.max_dense_poses)) {
+      find_couplings();
+    } else {
+      blocks_.resize(triangle(poses_.size(), 0));
+      reduced_.resize(size, size);
+    }
     rotations_.resize(state.camera_from_world.size());
   }
 
-  BundleStageReport run() {
-    BundleStageReport report;
-    double damping = kInitialDamping;
-    double growth = 2.0;
-    double cost = linearise();
-    BundleState trial = state_;
-    bool fresh = true;
-    while (report.iterations < stage_.iterations && damping < kMaxDamping) {
-      if (must_stop(stage_.may_go_on)) {
-        report.cancelled = true;
-        return report;
-      }
-      if (!fresh) cost = linearise();
-      fresh = true;
-      ++report.iterations;
-      const double predicted = solve(damping) ? move(damping, trial) : -1.0;
-      const double trial_cost = predicted > 0.0 ? total_cost(trial) : cost;
-      if (!(trial_cost < cost)) {
-        damping *= growth;
-        growth *= 2.0;
-        continue;
-      }
-      const double gain = 2.0 * (cost - trial_cost) / predicted - 1.0;
-      damping = std::max(kMinDamping, damping * std::max(1.0 / 3.0, 1.0 - gain * gain * gain));
-      growth = 2.0;
-      std::swap(state_, trial);
-      fresh = false;
-      if (cost - trial_cost < stage_.options->min_decrease * cost) break;
+  double linearise() {
+    update_rotations(state_);
+    for (PoseBlock& block : poses_) {
+      block.hessian.setZero();
+      block.gradient.setZero();
     }
-    report.usable = std::isfinite(cost);
-    return report;
+    double sum = 0.0;
+    for (PointBlock& block : points_) {
+      block.hessian.setZero();
+      block.gradient.setZero();
+      for (int k = block.first; k < block.last; ++k) {
+        sum += linearise(block, static_cast<std::size_t>(k));
+      }
+    }
+    return 0.5 * sum;
   }
+
+  double propose(double damping) { return solve(damping) ? move(damping) : -1.0; }
+
+  double trial_cost() {
+    update_rotations(trial_);
+    double sum = 0.0;
+    double weight = 1.0;
+    for (const PointBlock& block : points_) {
+      const Eigen::Vector3d& point = trial_.points[static_cast<std::size_t>(block.point)];
+      for (int k = block.first; k < block.last; ++k) {
+        const Link& link = links_[static_cast<std::size_t>(k)];
+        const BundleProblem::Observation& o = observation(link);
+        const Eigen::Vector3d p = in_camera(trial_, link, point);
+        sum += kernel(o, bundle_residual(*stage_.camera, o, p).squaredNorm(), weight);
+      }
+    }
+    return 0.5 * sum;
+  }
+
+  void accept() { std::swap(state_, trial_); }
 
  private:
   void collect_poses() {
@@ -193,6 +205,36 @@ class SchurSolver {
     }
   }
 
+  /// Which pairs of poses see a common point, and where their blocks are.
+  void find_couplings() {
+    places_.assign(triangle(poses_.size(), 0), -1);
+    for (const PointBlock& block : points_) {
+      for (int i = block.first; i < block.last; ++i) {
+        for (int j = block.first; j < i; ++j) {
+          const int a = link_slots_[static_cast<std::size_t>(i)];
+          const int b = link_slots_[static_cast<std::size_t>(j)];
+          if (a >= 0 && b >= 0) places_[triangle_of(a, b)] = 0;
+        }
+      }
+    }
+    std::vector<std::pair<int, int>> coupled;
+    for (int a = 0; a < static_cast<int>(poses_.size()); ++a) {
+      for (int b = 0; b < a; ++b) {
+        if (places_[triangle_of(a, b)] == 0) coupled.emplace_back(a, b);
+      }
+    }
+    sparse_.emplace(6, static_cast<int>(poses_.size()), std::move(coupled));
+    for (int place = 0; place < sparse_->blocks(); ++place) {
+      places_[triangle_of(sparse_->row(place), sparse_->column(place))] = place;
+    }
+    blocks_.resize(static_cast<std::size_t>(sparse_->blocks()));
+  }
+
+  static std::size_t triangle_of(int a, int b) {
+    return triangle(static_cast<std::size_t>(std::max(a, b)),
+                    static_cast<std::size_t>(std::min(a, b)));
+  }
+
   const BundleProblem::Observation& observation(const Link& link) const {
     return stage_.problem->observations[static_cast<std::size_t>(link.observation)];
   }
@@ -209,47 +251,9 @@ class SchurSolver {
     return rotations_[pose] * point + state.camera_from_world[pose].translation();
   }
 
-  /// Cost of one squared residual and the weight that makes it quadratic (Huber).
   double kernel(const BundleProblem::Observation& o, double error2, double& weight) const {
-    const double gate2 = bundle_gate2(o, *stage_.options);
     weight = 1.0;
-    if (!stage_.robust || error2 <= gate2) return error2;
-    weight = std::sqrt(gate2 / error2);
-    return 2.0 * weight * error2 - gate2;
-  }
-
-  double total_cost(const BundleState& state) {
-    update_rotations(state);
-    double sum = 0.0;
-    double weight = 1.0;
-    for (const PointBlock& block : points_) {
-      const Eigen::Vector3d& point = state.points[static_cast<std::size_t>(block.point)];
-      for (int k = block.first; k < block.last; ++k) {
-        const Link& link = links_[static_cast<std::size_t>(k)];
-        const BundleProblem::Observation& o = observation(link);
-        const Eigen::Vector3d p = in_camera(state, link, point);
-        sum += kernel(o, bundle_residual(*stage_.camera, o, p).squaredNorm(), weight);
-      }
-    }
-    return 0.5 * sum;
-  }
-
-  /// Normal equations at the current state; returns the cost.
-  double linearise() {
-    update_rotations(state_);
-    for (PoseBlock& block : poses_) {
-      block.hessian.setZero();
-      block.gradient.setZero();
-    }
-    double sum = 0.0;
-    for (PointBlock& block : points_) {
-      block.hessian.setZero();
-      block.gradient.setZero();
-      for (int k = block.first; k < block.last; ++k) {
-        sum += linearise(block, static_cast<std::size_t>(k));
-      }
-    }
-    return 0.5 * sum;
+    return stage_.robust ? huber(error2, bundle_gate2(o, *stage_.options), weight) : error2;
   }
 
   double linearise(PointBlock& block, std::size_t k) {
@@ -288,7 +292,8 @@ class SchurSolver {
       Matrix6d diagonal = poses_[i].hessian.selfadjointView<Eigen::Lower>();
       diagonal.diagonal() +=
           damping * poses_[i].hessian.diagonal() + Vector6d::Constant(kTinyDiagonal);
-      Block66& block = blocks_[triangle(i, i)];
+      const std::size_t place = triangle(i, i);
+      Block66& block = blocks_[places_.empty() ? place : static_cast<std::size_t>(places_[place])];
       for (int c = 0; c < 6; ++c) std::copy_n(diagonal.col(c).data(), 6, &block.column[c][0]);
       pose_step_.segment<6>(static_cast<Eigen::Index>(6 * i)) = -poses_[i].gradient;
     }
@@ -318,10 +323,19 @@ class SchurSolver {
       for (int c = 0; c < 3; ++c) std::copy_n(s.col(c).data(), 6, &scaled.column[c][0]);
     }
     simd_kernel<couple>()(link_slots_.data() + block.first, scaled_.data() + block.first,
-                          block.last - block.first, blocks_.data());
+                          block.last - block.first, places_.empty() ? nullptr : places_.data(),
+                          blocks_.data());
   }
 
   bool solve_for_poses() {
+    if (sparse_) {
+      for (int place = 0; place < sparse_->blocks(); ++place) {
+        const Block66& block = blocks_[static_cast<std::size_t>(place)];
+        SparseBlocks::Block target = sparse_->block(place);
+        for (int c = 0; c < 6; ++c) std::copy_n(&block.column[c][0], 6, target.col(c).data());
+      }
+      return sparse_->solve(pose_step_);
+    }
     for (std::size_t a = 0; a < poses_.size(); ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
         const Block66& block = blocks_[triangle(a, b)];
@@ -338,22 +352,22 @@ class SchurSolver {
   }
 
   /// Applies the step to a copy of the state; returns the decrease of cost the model predicts.
-  double move(double damping, BundleState& trial) {
-    trial = state_;
+  double move(double damping) {
+    trial_ = state_;
     double predicted = 0.0;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       const Vector6d step = pose_step_.segment<6>(static_cast<Eigen::Index>(6 * i));
       const PoseBlock& block = poses_[i];
       predicted +=
           damping * step.cwiseAbs2().dot(block.hessian.diagonal()) - step.dot(block.gradient);
-      SE3& pose = trial.camera_from_world[static_cast<std::size_t>(block.pose)];
+      SE3& pose = trial_.camera_from_world[static_cast<std::size_t>(block.pose)];
       pose = SE3::exp(step) * pose;
     }
     for (const PointBlock& block : points_) {
       const Eigen::Vector3d step = point_step(block);
       predicted +=
           damping * step.cwiseAbs2().dot(block.hessian.diagonal()) - step.dot(block.gradient);
-      trial.points[static_cast<std::size_t>(block.point)] += step;
+      trial_.points[static_cast<std::size_t>(block.point)] += step;
     }
     return 0.5 * predicted;
   }
@@ -379,6 +393,7 @@ class SchurSolver {
 
   const BundleStage& stage_;
   BundleState& state_;
+  BundleState trial_;
   std::vector<int> slots_;  ///< one per pose: place among the free ones that are seen, or -1
   std::vector<PoseBlock> poses_;
   std::vector<PointBlock> points_;
@@ -387,15 +402,18 @@ class SchurSolver {
   std::vector<Block63> scaled_;   ///< the same times L^-T of the point
   std::vector<int> link_slots_;   ///< slots of the links
   std::vector<Eigen::Matrix3d> rotations_;
-  std::vector<Block66> blocks_;  ///< camera system after the elimination, see triangle()
-  Eigen::MatrixXd reduced_;      ///< the same as one matrix, lower triangle
+  std::vector<Block66> blocks_;         ///< camera system after the elimination
+  std::vector<int> places_;             ///< of the blocks by triangle(); empty: just there
+  std::optional<SparseBlocks> sparse_;  ///< the same as one matrix, if poses are many
+  Eigen::MatrixXd reduced_;             ///< the same as one matrix if not, lower triangle
   Eigen::VectorXd pose_step_;
 };
 
 }  // namespace
 
-BundleStageReport minimise_with_schur(const BundleStage& stage, BundleState& state) {
-  return SchurSolver(stage, state).run();
+DescentReport minimise_bundle(const BundleStage& stage, BundleState& state) {
+  SchurSolver solver(stage, state);
+  return descend(solver, stage.iterations, stage.options->min_decrease, stage.may_go_on);
 }
 
 }  // namespace dxslam
