@@ -30,13 +30,15 @@ void add_shared(std::vector<Covisible>& covisibles, KeyframeId other, int change
 }  // namespace
 
 const Keyframe& Map::keyframe(KeyframeId id) const {
-  require(has_keyframe(id), "the map has no keyframe of this id");
-  return *keyframes_[id];
+  const Keyframe* keyframe = keyframes_.find(id);
+  require(keyframe != nullptr, "the map has no keyframe of this id");
+  return *keyframe;
 }
 
 const MapPoint& Map::point(PointId id) const {
-  require(has_point(id), "the map has no point of this id");
-  return *points_[id];
+  const MapPoint* point = points_.find(id);
+  require(point != nullptr, "the map has no point of this id");
+  return *point;
 }
 
 Keyframe& Map::mutable_keyframe(KeyframeId id) { return const_cast<Keyframe&>(keyframe(id)); }
@@ -45,30 +47,26 @@ MapPoint& Map::mutable_point(PointId id) { return const_cast<MapPoint&>(point(id
 KeyframeId Map::add_keyframe(FramePtr frame, const SE3& world_from_camera, KeyframeId parent) {
   require(frame != nullptr, "a keyframe needs a frame");
   require(parent == kNoId || has_keyframe(parent), "the parent of a keyframe must be in the map");
-  auto keyframe = std::make_unique<Keyframe>();
-  keyframe->id = static_cast<KeyframeId>(keyframes_.size());
-  keyframe->points.assign(frame->size(), kNoId);
-  keyframe->frame = std::move(frame);
-  keyframe->world_from_camera = world_from_camera;
-  keyframe->parent = parent;
-  keyframe->component = parent == kNoId ? component_count_++ : this->keyframe(parent).component;
-  last_keyframe_ = keyframe->id;
-  keyframes_.push_back(std::move(keyframe));
-  removed_.emplace_back();
-  ++keyframe_count_;
+  Keyframe keyframe;
+  keyframe.id = next_keyframe_++;
+  keyframe.points.assign(frame->size(), kNoId);
+  keyframe.frame = std::move(frame);
+  keyframe.world_from_camera = world_from_camera;
+  keyframe.parent = parent;
+  keyframe.component = parent == kNoId ? component_count_++ : this->keyframe(parent).component;
+  last_keyframe_ = keyframe.id;
+  keyframes_.insert(last_keyframe_, std::move(keyframe));
   return last_keyframe_;
 }
 
 PointId Map::add_point(const Eigen::Vector3d& position, KeyframeId keyframe,
                        std::uint32_t keypoint) {
   MapPoint point;
-  point.id = static_cast<PointId>(points_.size());
+  const PointId id = point.id = next_point_++;
   point.position = position;
   point.created_by = keyframe;
   point.visible = point.found = 1;
-  points_.emplace_back(std::move(point));
-  ++point_count_;
-  const PointId id = static_cast<PointId>(points_.size() - 1);
+  points_.insert(id, std::move(point));
   require(add_observation(id, keyframe, keypoint), "the keypoint of a new point must be free");
   refresh_point(id);
   return id;
@@ -107,8 +105,7 @@ void Map::remove_observation(PointId point, KeyframeId keyframe) {
   p.observations.erase(it);
   change_covisibility(p, keyframe, -1);
   if (p.observations.empty()) {
-    points_[point].reset();
-    --point_count_;
+    points_.erase(point);
     return;
   }
   if (position < p.descriptor) --p.descriptor;
@@ -136,13 +133,13 @@ void Map::remove_keyframe(KeyframeId id) {
   for (const PointId p : std::vector<PointId>(k.points)) {
     if (p != kNoId) remove_observation(p, id);
   }
-  removed_[id] = {k.parent, keyframe(k.parent).world_from_camera.inverse() * k.world_from_camera};
-  for (const auto& other : keyframes_) {
-    if (other && other->parent == id) other->parent = k.parent;
-  }
+  removed_.insert(id,
+                  {k.parent, keyframe(k.parent).world_from_camera.inverse() * k.world_from_camera});
+  keyframes_.for_each([&](KeyframeId, Keyframe& other) {
+    if (other.parent == id) other.parent = k.parent;
+  });
   if (last_keyframe_ == id) last_keyframe_ = k.parent;
-  keyframes_[id].reset();
-  --keyframe_count_;
+  keyframes_.erase(id);
 }
 
 void Map::join_components(KeyframeId parent, KeyframeId child,
@@ -158,17 +155,19 @@ void Map::join_components(KeyframeId parent, KeyframeId child,
     above = id;
     id = next;
   }
-  for (const auto& k : keyframes_) {
-    if (!k || k->component != from) continue;
-    k->component = into;
-    k->world_from_camera = parent_world_from_child_world * k->world_from_camera;
-    for (const PointId id : k->points) {
+  keyframes_.for_each([&](KeyframeId, Keyframe& k) {
+    if (k.component != from) return;
+    k.component = into;
+    k.world_from_camera = parent_world_from_child_world * k.world_from_camera;
+    for (const PointId id : k.points) {
+      if (id == kNoId) continue;
+      MapPoint& p = *points_.find(id);
       // A point is moved once, by the first keyframe that sees it.
-      if (id == kNoId || points_[id]->observations.front().keyframe != k->id) continue;
-      points_[id]->position = parent_world_from_child_world * points_[id]->position;
-      points_[id]->normal = parent_world_from_child_world.rotation() * points_[id]->normal;
+      if (p.observations.front().keyframe != k.id) continue;
+      p.position = parent_world_from_child_world * p.position;
+      p.normal = parent_world_from_child_world.rotation() * p.normal;
     }
-  }
+  });
 }
 
 cv::Mat Map::descriptor_of(PointId id) const {
@@ -227,19 +226,15 @@ void Map::refresh_point(PointId id) {
 
 std::vector<KeyframeId> Map::keyframe_ids() const {
   std::vector<KeyframeId> ids;
-  ids.reserve(keyframe_count_);
-  for (const auto& k : keyframes_) {
-    if (k) ids.push_back(k->id);
-  }
+  ids.reserve(keyframes_.size());
+  keyframes_.for_each([&](KeyframeId id, const Keyframe&) { ids.push_back(id); });
   return ids;
 }
 
 std::vector<PointId> Map::point_ids() const {
   std::vector<PointId> ids;
-  ids.reserve(point_count_);
-  for (const auto& p : points_) {
-    if (p) ids.push_back(p->id);
-  }
+  ids.reserve(points_.size());
+  points_.for_each([&](PointId id, const MapPoint&) { ids.push_back(id); });
   return ids;
 }
 
@@ -256,10 +251,10 @@ std::vector<Covisible> Map::best_covisibles(KeyframeId id, std::size_t n, int mi
 }
 
 Map::Anchor Map::anchor_of(KeyframeId id) const {
-  require(id < keyframes_.size(), "the map never had a keyframe of this id");
+  require(id < next_keyframe_, "the map never had a keyframe of this id");
   Anchor anchor{id, SE3()};
   while (!has_keyframe(anchor.keyframe)) {
-    const Removed& removed = removed_[anchor.keyframe];
+    const Removed& removed = *removed_.find(anchor.keyframe);
     anchor.anchor_from_camera = removed.parent_from_camera * anchor.anchor_from_camera;
     anchor.keyframe = removed.parent;
   }

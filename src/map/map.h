@@ -2,18 +2,17 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
-#include <memory>
 #include <opencv2/core.hpp>
-#include <optional>
 #include <vector>
 
+#include "map/id_table.h"
 #include "map/map_types.h"
 
 namespace dxslam {
 
 struct MapParts;
 
-/// Keyframes and points, and who sees what. The map owns both, in dense storage indexed by id, and
+/// Keyframes and points, and who sees what. The map owns both, in memory for what lives in it, and
 /// is the only place that changes observations and covisibility, so that the two always agree.
 /// Not thread-safe: one thread owns a map, others get snapshots (local_map.h).
 class Map {
@@ -47,10 +46,8 @@ class Map {
   void join_components(KeyframeId parent, KeyframeId child,
                        const SE3& parent_world_from_child_world);
 
-  bool has_keyframe(KeyframeId id) const {
-    return id < keyframes_.size() && keyframes_[id] != nullptr;
-  }
-  bool has_point(PointId id) const { return id < points_.size() && points_[id].has_value(); }
+  bool has_keyframe(KeyframeId id) const { return keyframes_.find(id) != nullptr; }
+  bool has_point(PointId id) const { return points_.find(id) != nullptr; }
   /// Throw ContractError for ids that do not exist (any more).
   const Keyframe& keyframe(KeyframeId id) const;
   const MapPoint& point(PointId id) const;
@@ -66,8 +63,8 @@ class Map {
   /// Ids of all living keyframes and points, rising.
   std::vector<KeyframeId> keyframe_ids() const;
   std::vector<PointId> point_ids() const;
-  std::size_t keyframe_count() const { return keyframe_count_; }
-  std::size_t point_count() const { return point_count_; }
+  std::size_t keyframe_count() const { return keyframes_.size(); }
+  std::size_t point_count() const { return points_.size(); }
   KeyframeId last_keyframe() const { return last_keyframe_; }
   /// Components ever started; some may have been joined to others.
   std::uint32_t component_count() const { return component_count_; }
@@ -96,11 +93,11 @@ class Map {
   void bind_observations(const MapPoint& point);
   void count_covisibility();
 
-  std::vector<std::unique_ptr<Keyframe>> keyframes_;  // by id; null where removed
-  std::vector<std::optional<MapPoint>> points_;       // by id; empty where removed
-  std::vector<Removed> removed_;                      // by keyframe id
-  std::size_t keyframe_count_ = 0;
-  std::size_t point_count_ = 0;
+  IdTable<Keyframe> keyframes_;
+  IdTable<MapPoint> points_;
+  IdTable<Removed> removed_;  // by keyframe id
+  KeyframeId next_keyframe_ = 0;
+  PointId next_point_ = 0;
   KeyframeId last_keyframe_ = kNoId;
   std::uint32_t component_count_ = 0;
 };

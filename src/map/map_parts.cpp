@@ -126,24 +126,19 @@ MapParts take_apart(const Map& map) {
 
 Map::Map(MapParts parts) {
   check_keyframes(parts);
-  keyframes_.reserve(parts.keyframes.size());
-  removed_.resize(parts.keyframes.size());
   for (Keyframe& k : parts.keyframes) {
     k.points.assign(k.frame->size(), kNoId);
     k.covisibles.clear();
     component_count_ = std::max(component_count_, k.component + 1);
-    keyframes_.push_back(std::make_unique<Keyframe>(std::move(k)));
+    keyframes_.insert(next_keyframe_++, std::move(k));
   }
-  keyframe_count_ = keyframes_.size();
   last_keyframe_ = parts.last_keyframe;
-  points_.reserve(parts.points.size());
   for (MapPoint& p : parts.points) {
     expect(p.id == points_.size(), "point {} has the id {}", points_.size(), p.id);
     check_point(p, keyframes_.size());
     bind_observations(p);
-    points_.emplace_back(std::move(p));
+    points_.insert(next_point_++, std::move(p));
   }
-  point_count_ = points_.size();
   count_covisibility();
 }
 
@@ -154,8 +149,8 @@ void Map::bind_observations(const MapPoint& p) {
            p.id, o.keyframe);
     expect(i == 0 || p.observations[i - 1].keyframe < o.keyframe,
            "the observations of point {} are not by rising keyframe", p.id);
-    Keyframe& k = *keyframes_[o.keyframe];
-    expect(k.component == keyframes_[p.observations[0].keyframe]->component,
+    Keyframe& k = mutable_keyframe(o.keyframe);
+    expect(k.component == keyframe(p.observations[0].keyframe).component,
            "point {} is seen from different components", p.id);
     expect(o.keypoint < k.points.size(), "point {} is seen by keypoint {} of {} of keyframe {}",
            p.id, o.keypoint, k.points.size(), o.keyframe);
@@ -168,31 +163,28 @@ void Map::bind_observations(const MapPoint& p) {
 void Map::count_covisibility() {
   // The keyframes of all points one behind the other: points are visited in no order below.
   std::vector<std::size_t> first(points_.size() + 1, 0);
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    first[p + 1] = first[p] + points_[p]->observations.size();
-  }
   std::vector<KeyframeId> seen_by;
-  seen_by.reserve(first.back());
-  for (const auto& p : points_) {
-    for (const PointObservation& o : p->observations) seen_by.push_back(o.keyframe);
-  }
+  points_.for_each([&](PointId id, const MapPoint& p) {
+    for (const PointObservation& o : p.observations) seen_by.push_back(o.keyframe);
+    first[id + 1] = seen_by.size();
+  });
   std::vector<int> shared(keyframes_.size(), 0);
   std::vector<KeyframeId> others;
-  for (const auto& k : keyframes_) {
-    for (const PointId p : k->points) {
+  keyframes_.for_each([&](KeyframeId, Keyframe& k) {
+    for (const PointId p : k.points) {
       if (p == kNoId) continue;
       for (std::size_t i = first[p]; i < first[p + 1]; ++i) {
         if (shared[seen_by[i]]++ == 0) others.push_back(seen_by[i]);
       }
     }
     std::sort(others.begin(), others.end());
-    k->covisibles.reserve(others.size());
+    k.covisibles.reserve(others.size());
     for (const KeyframeId other : others) {
-      if (other != k->id) k->covisibles.push_back({other, shared[other]});
+      if (other != k.id) k.covisibles.push_back({other, shared[other]});
       shared[other] = 0;
     }
     others.clear();
-  }
+  });
 }
 
 }  // namespace dxslam

@@ -3,6 +3,7 @@
 #include "map/map.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "core/error.h"
 #include "map/local_map.h"
@@ -70,6 +71,31 @@ TEST(Map, BestCovisiblesFallBySharedPoints) {
   EXPECT_GE(best[0].shared, best[1].shared);
   EXPECT_TRUE(best[0].keyframe == 3 || best[0].keyframe == 5);
   EXPECT_TRUE(built.map.best_covisibles(4, 3, 1000000).empty());
+}
+
+// As mapping does for hours in one place: most of what is made is removed again soon.
+TEST(Map, KeepsTheMemoryOfWhatLivesNotOfWhatEverWas) {
+  PointScene scene(400);
+  const FramePtr frame = scene.frame(0, SE3(), 0.0, 1.0);
+  Map map;
+  const KeyframeId seen_by = map.add_keyframe(frame, SE3(), kNoId);
+  const PointId kept = map.add_point(Eigen::Vector3d::UnitZ(), seen_by, 0);
+  const auto turn_over = [&](int points) {
+    PointId last = kNoId;
+    for (int i = 0; i < points; ++i) {
+      last = map.add_point(Eigen::Vector3d::UnitZ(), seen_by, 1);
+      map.remove_point(last);
+    }
+    return last;
+  };
+  const PointId before = turn_over(10000);
+  const std::size_t heap = mallinfo2().uordblks + mallinfo2().hblkhd;
+  const PointId after = turn_over(1000000);
+  EXPECT_EQ(after, before + 1000000);  // no id twice
+  EXPECT_LT(mallinfo2().uordblks + mallinfo2().hblkhd, heap + 10000);
+  EXPECT_TRUE(map.has_point(kept));
+  EXPECT_FALSE(map.has_point(before));
+  EXPECT_EQ(map.point_ids(), std::vector<PointId>{kept});
 }
 
 TEST(LocalMap, HoldsThePointsOfCovisibleAndNearbyKeyframes) {

@@ -11,7 +11,7 @@
 
 namespace dxslam {
 
-// Ids are given once and never again; they index the map's dense storage.
+// Ids rise; each is given once and never again.
 using KeyframeId = std::uint32_t;
 using PointId = std::uint32_t;
 inline constexpr std::uint32_t kNoId = 0xFFFFFFFFU;
