@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
+#include <utility>
 
 #include "core/error.h"
 #include "core/options.h"
@@ -33,21 +34,25 @@ double peak_memory_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-// Runs of frames without a pose, as [first index, last index, seconds].
+// Runs of frames without a pose.
 Json lost_intervals(const System& system) {
   Json intervals = Json::array();
-  const std::vector<TrackedFrame>& frames = system.frames();
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].state == TrackingState::kTracking) continue;
-    std::size_t last = i;
-    while (last + 1 < frames.size() && frames[last + 1].state != TrackingState::kTracking) ++last;
-    intervals.push_back({{"first_frame", frames[i].index},
-                         {"last_frame", frames[last].index},
-                         {"frames", last - i + 1},
-                         {"first_stamp", frames[i].stamp},
-                         {"last_stamp", frames[last].stamp}});
-    i = last;
-  }
+  bool lost = false;
+  system.frames().for_each([&](const TrackedFrame& frame) {
+    const bool was_lost = std::exchange(lost, frame.state != TrackingState::kTracking);
+    if (!lost) return;
+    if (!was_lost) {
+      intervals.push_back({{"first_frame", frame.index},
+                           {"last_frame", frame.index},
+                           {"frames", 0},
+                           {"first_stamp", frame.stamp},
+                           {"last_stamp", frame.stamp}});
+    }
+    Json& interval = intervals.back();
+    interval["last_frame"] = frame.index;
+    interval["frames"] = interval["frames"].get<int>() + 1;
+    interval["last_stamp"] = frame.stamp;
+  });
   return intervals;
 }
 
@@ -98,11 +103,8 @@ Json components_table(const System& system) {
 
 Json loop_table(const System& system) {
   Json candidates = Json::array();
-  int accepted = 0;
-  int corrections = 0;
-  for (const LoopRecord& r : system.backend().loop_records()) {
-    accepted += r.accepted ? 1 : 0;
-    corrections += r.effect == "bend" || r.effect == "join" ? 1 : 0;
+  const LoopLog& log = system.backend().loop_log();
+  for (const LoopRecord& r : log.records()) {
     candidates.push_back({{"frame", r.frame},
                           {"query", r.query},
                           {"candidate", r.candidate},
@@ -121,8 +123,9 @@ Json loop_table(const System& system) {
                           {"largest_move_m", rounded(r.largest_move, 1e-4)}});
   }
   return {{"method", system.backend().loop_method()},
-          {"accepted", accepted},
-          {"corrections", corrections},
+          {"accepted", log.accepted()},
+          {"corrections", log.corrections()},
+          {"candidates_left_out", log.forgotten()},
           {"candidates", candidates}};
 }
 

@@ -36,6 +36,14 @@ class SE3 {
   /// From a 4x4 matrix whose rotation block is orthonormal up to rounding.
   explicit SE3(const Eigen::Matrix4d& matrix);
 
+  /// Takes a quaternion that is of unit length already to the bit: what was stored comes back.
+  static SE3 of_unit(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation) {
+    SE3 pose;
+    pose.rotation_ = rotation;
+    pose.translation_ = translation;
+    return pose;
+  }
+
   static SE3 exp(const Vector6d& tangent);
   Vector6d log() const;
   /// exp(Adj * v) = T * exp(v) * T^-1.

@@ -103,7 +103,7 @@ void Backend::record(const LoopReport& report, const std::vector<LoopCandidate>&
     record.confirmations = attempt.verification.confirmations;
     record.contradiction = attempt.plan.contradiction;
     if (record.accepted) record.largest_move = report.change.largest_move;
-    records_.push_back(std::move(record));
+    loop_log_.add(std::move(record));
   }
 }
 

@@ -10,28 +10,11 @@
 #include "mapping/local_mapper.h"
 #include "relocalization/consensus.h"
 #include "relocalization/relocalizer.h"
+#include "slam/loop_log.h"
 #include "slam/loop_search.h"
 #include "slam/system_options.h"
 
 namespace dxslam {
-
-/// One candidate of one keyframe, and what became of it.
-struct LoopRecord {
-  std::int64_t frame = 0;  ///< of the query
-  KeyframeId query = kNoId;
-  KeyframeId candidate = kNoId;
-  double bow_score = 0.0;
-  double global_distance = 0.0;  ///< NaN where there is none
-  bool accepted = false;
-  std::string verdict;  ///< "accepted", or why not
-  std::string effect;   ///< on the map: none, weld, bend or join
-  int inliers = 0;
-  double found_share = 0.0;    ///< of the points that should be in view
-  double covered_share = 0.0;  ///< of the image's parts where points are due
-  int confirmations = 0;       ///< neighbours of the query that see the place
-  double contradiction = 0.0;  ///< metres between the loop and the map before
-  double largest_move = 0.0;   ///< metres, of a keyframe
-};
 
 /// Answer to a frame that asks where it is.
 struct RelocalizationAnswer {
@@ -70,7 +53,7 @@ class Backend {
 
   const Map& map() const { return mapper_.map(); }
   const std::vector<LoopEdge>& closed_loops() const { return closer_.closed_loops(); }
-  const std::vector<LoopRecord>& loop_records() const { return records_; }
+  const LoopLog& loop_log() const { return loop_log_; }
   const std::string& loop_method() const { return search_.method(); }
   /// Of the keyframe inserted last.
   const MappingReport& report() const { return report_; }
@@ -90,7 +73,7 @@ class Backend {
   GlobalIndex index_;
   MappingReport report_;
   bool grown_ = false;  // a keyframe was inserted, so there is something to adjust
-  std::vector<LoopRecord> records_;
+  LoopLog loop_log_;
 };
 
 }  // namespace dxslam

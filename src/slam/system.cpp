@@ -44,7 +44,7 @@ System::~System() {
 }
 
 void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
-  require(frames_.empty(), "a map must be loaded before the first image");
+  require(!began_, "a map must be loaded before the first image");
   require(map.keyframe_count() > 0, "a map to go on with must not be empty");
   backend_.load(std::move(map), std::move(closed_loops));
   map_loaded_ = true;
@@ -52,7 +52,7 @@ void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
 }
 
 void System::set_autosave(int keyframes, MapCallback save) {
-  require(frames_.empty(), "autosave must be set before the first image");
+  require(!began_, "autosave must be set before the first image");
   require(keyframes > 0, "autosave needs a positive number of keyframes");
   autosave_keyframes_ = keyframes;
   autosave_ = std::move(save);
@@ -63,6 +63,7 @@ void System::process(const RgbdImage& image) {
   if (!mapping_ && !map_loaded_) {
     throw InputError("localization mode has no map, expected one to be loaded");
   }
+  began_ = true;
   Extracted extracted = extract(image);
   if (!options_.deterministic) {
     extracted_.push(std::move(extracted));
@@ -92,7 +93,6 @@ void System::finish() {
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
   rethrow();
-  hang_first_frames();
   const Stopwatch watch;
   backend_.finish();
   times_.add("full_bundle", watch.ms());
@@ -101,16 +101,6 @@ void System::finish() {
 
 void System::note_map_size() {
   map_sizes_.push_back({map().keyframe_count(), map().point_count()});
-}
-
-void System::hang_first_frames() {
-  for (TrackedFrame& frame : frames_) {
-    if (frame.state != TrackingState::kTracking || frame.reference != kNoId) continue;
-    const auto began = std::find_if(roots_.begin(), roots_.end(), [&](const Root& root) {
-      return root.index == frame.index && root.stamp == frame.stamp;
-    });
-    if (began != roots_.end()) frame.reference = began->keyframe;
-  }
 }
 
 System::Extracted System::extract(const RgbdImage& image) {
@@ -132,7 +122,7 @@ std::optional<KeyframeRequest> System::track(const Extracted& extracted) {
   const double ms = watch.ms();
   times_.add("track", ms);
   times_.add("frame", extracted.ms + ms);
-  frames_.push_back(tracked);
+  frames_.append(tracked);
   if (on_frame_) on_frame_(tracked);
   return request;
 }
@@ -315,9 +305,9 @@ std::vector<ComponentSummary> System::components() const {
     const KeyframeId seen_by = map().point(id).observations.front().keyframe;
     ++all[map().keyframe(seen_by).component].points;
   }
-  for (const TrackedFrame& frame : frames_) {
+  frames_.for_each([&](const TrackedFrame& frame) {
     if (const auto component = component_of(frame)) ++all[*component].frames;
-  }
+  });
   const auto joined = [](const ComponentSummary& c) { return c.keyframes == 0; };
   all.erase(std::remove_if(all.begin(), all.end(), joined), all.end());
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
@@ -326,10 +316,20 @@ std::vector<ComponentSummary> System::components() const {
   return all;
 }
 
+// A frame that began a map was tracked before there was a keyframe to hang on.
+KeyframeId System::reference_of(const TrackedFrame& frame) const {
+  if (frame.state != TrackingState::kTracking || frame.reference != kNoId) return frame.reference;
+  const auto began = std::find_if(roots_.begin(), roots_.end(), [&](const Root& root) {
+    return root.index == frame.index && root.stamp == frame.stamp;
+  });
+  return began == roots_.end() ? kNoId : began->keyframe;
+}
+
 std::optional<std::uint32_t> System::component_of(const TrackedFrame& frame) const {
   if (frame.state != TrackingState::kTracking) return std::nullopt;
-  if (frame.reference == kNoId) return std::nullopt;
-  return map().keyframe(map().anchor_of(frame.reference).keyframe).component;
+  const KeyframeId reference = reference_of(frame);
+  if (reference == kNoId) return std::nullopt;
+  return map().keyframe(map().anchor_of(reference).keyframe).component;
 }
 
 Trajectory System::trajectory(std::optional<std::uint32_t> component) const {
@@ -337,13 +337,13 @@ Trajectory System::trajectory(std::optional<std::uint32_t> component) const {
   if (all.empty()) return {};
   const std::uint32_t wanted = component.value_or(all.front().component);
   Trajectory trajectory;
-  for (const TrackedFrame& frame : frames_) {
-    if (component_of(frame) != wanted) continue;
-    const Map::Anchor anchor = map().anchor_of(frame.reference);
+  frames_.for_each([&](const TrackedFrame& frame) {
+    if (component_of(frame) != wanted) return;
+    const Map::Anchor anchor = map().anchor_of(reference_of(frame));
     trajectory.push_back({frame.stamp, map().keyframe(anchor.keyframe).world_from_camera *
                                            anchor.anchor_from_camera *
                                            frame.reference_from_camera});
-  }
+  });
   return trajectory;
 }
 

@@ -14,6 +14,7 @@
 #include "features/extractor.h"
 #include "slam/backend.h"
 #include "slam/bounded_queue.h"
+#include "slam/frame_log.h"
 #include "slam/right_of_way.h"
 #include "slam/stage_times.h"
 #include "slam/system_options.h"
@@ -91,8 +92,8 @@ class System {
   /// then may the results below be read. Further calls do nothing.
   void finish();
 
-  /// Every frame given, in order.
-  const std::vector<TrackedFrame>& frames() const { return frames_; }
+  /// Every frame given, in order. The ones that began a map have no reference.
+  const FrameLog& frames() const { return frames_; }
   /// All maps there are, the one with most tracked frames first.
   std::vector<ComponentSummary> components() const;
   /// Poses of the frames tracked in one component, as the final map has them; of the first of
@@ -135,8 +136,8 @@ class System {
   void publish(LocalMapPtr local_map);
   LocalMapPtr newest_local_map();
   void count(const MappingReport& report);
-  void hang_first_frames();
   void note_map_size();
+  KeyframeId reference_of(const TrackedFrame& frame) const;
   std::optional<std::uint32_t> component_of(const TrackedFrame& frame) const;
 
   void run_tracking();
@@ -152,13 +153,14 @@ class System {
   Tracker tracker_;
   RightOfWay right_of_way_;  // of extraction and tracking over mapping
   Backend backend_;
-  std::vector<TrackedFrame> frames_;
+  FrameLog frames_;
   std::vector<Root> roots_;
   std::vector<MapSize> map_sizes_;
   MappingTotals totals_;
   StageTimes times_;
   MapCallback autosave_;
   int autosave_keyframes_ = 0;
+  bool began_ = false;  // an image was given
   bool next_begins_sequence_ = false;
   bool seeking_ = false;  // there is a map, but where in it is not known
   int lost_frames_ = 0;   // in a row

@@ -78,15 +78,15 @@ void feed(const LifelongSettings& settings, RgbdSequence& sequence, bool dark, S
 // Poses given in a world of their own (a map begun anew and not yet joined) say nothing about the
 // place in the first map, so they do not count as localized.
 void collect_online_poses(const System& system, std::vector<Visit>& visits) {
-  std::size_t k = 0;
-  for (Visit& visit : visits) {
-    for (std::size_t i = 0; i < visit.frames && k < system.frames().size(); ++i, ++k) {
-      const TrackedFrame& frame = system.frames()[k];
-      const bool begins = frame.component == kNoId && &visit == &visits.front();
-      if (frame.state != TrackingState::kTracking || (frame.component != 0 && !begins)) continue;
-      visit.online.push_back({frame.stamp, frame.world_from_camera});
-    }
-  }
+  std::size_t v = 0;
+  std::size_t left = visits.front().frames;  // of visit v
+  system.frames().for_each([&](const TrackedFrame& frame) {
+    while (left == 0) left = visits[++v].frames;
+    --left;
+    const bool begins = frame.component == kNoId && v == 0;
+    if (frame.state != TrackingState::kTracking || (frame.component != 0 && !begins)) return;
+    visits[v].online.push_back({frame.stamp, frame.world_from_camera});
+  });
 }
 
 void write_lifelong(const LifelongSettings& settings, const System& system,
