@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <new>
 
 #include "core/error.h"
 #include "map_files/huge_pages.h"
@@ -53,7 +52,8 @@ bool read_piece(int file, char* to, std::size_t offset, std::size_t size) {
 
 }  // namespace
 
-FileBytes::FileBytes(const std::string& path, const std::string& expected, std::size_t max_bytes) {
+FileBytes::FileBytes(const std::string& path, const std::string& expected, std::size_t max_bytes,
+                     std::size_t start_bytes, const CheckStart& check_start) {
   const OpenFile file(path);
   if (file.get() < 0) {
     throw InputError(errno == ENOENT ? fmt::format("{}: no such file, expected {}", path, expected)
@@ -69,14 +69,22 @@ FileBytes::FileBytes(const std::string& path, const std::string& expected, std::
     throw InputError(fmt::format("{}: {} bytes, expected {} of at most {} bytes", path, size_,
                                  expected, max_bytes));
   }
+  const auto cannot_be_read = [&] {
+    return InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
+  };
+  std::string start(std::min(size_, start_bytes), '\0');
+  if (!read_piece(file.get(), start.data(), 0, start.size())) throw cannot_be_read();
+  check_start(start, size_);
   bytes_.reset(static_cast<char*>(std::malloc(size_ + 1)));  // never of size 0
-  if (bytes_ == nullptr) throw std::bad_alloc();
+  if (bytes_ == nullptr) {
+    throw InputError(fmt::format("{}: {} bytes, more than there is memory", path, size_));
+  }
   advise_huge_pages(bytes_.get(), size_);
   in_parallel((size_ + kPiece - 1) / kPiece, kPiecesForOneThread, [&](std::size_t i) {
     const std::size_t begin = i * kPiece;
     if (read_piece(file.get(), bytes_.get() + begin, begin, std::min(kPiece, size_ - begin)))
       return;
-    throw InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
+    throw cannot_be_read();
   });
 }
 

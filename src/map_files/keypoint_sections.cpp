@@ -5,12 +5,12 @@
 // are read in parallel and checked on the way.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstring>
 
 #include "core/error.h"
 #include "map_files/huge_pages.h"
 #include "map_files/in_parallel.h"
+#include "map_files/map_limits.h"
 #include "map_files/map_sections.h"
 
 namespace dxslam {
@@ -18,40 +18,12 @@ namespace {
 
 constexpr std::size_t kFramesForOneThread = 32;
 constexpr std::size_t kNumbers = 5;  // a keypoint: x, y, depth, score, sigma
-constexpr float kLargest = 1e9F;     // of any of them; fits an int
 
 DescriptorCoding read_coding(SectionReader& reader, bool binary) {
   const auto coding = reader.get<std::uint32_t>();
   const bool fits = binary ? coding == 0 : coding == 1 || coding == 2;
   if (!fits) reader.fail(fmt::format("descriptors of coding {}", coding));
   return static_cast<DescriptorCoding>(coding);
-}
-
-// Whether all are finite and at most kLargest: compared as whole numbers, which vectorises.
-bool are_plausible(const float* values, std::size_t n) {
-  std::uint32_t bound = 0;
-  std::memcpy(&bound, &kLargest, sizeof bound);
-  bool good = true;
-  for (std::size_t i = 0; i < n; ++i) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, values + i, sizeof bits);
-    good &= (bits & 0x7FFFFFFFU) <= bound;
-  }
-  return good;
-}
-
-bool are_plausible(const cv::Mat& descriptors) {
-  return descriptors.type() != CV_32FC1 ||
-         are_plausible(descriptors.ptr<float>(), descriptors.total());
-}
-
-// All of a frame but its descriptors.
-bool are_plausible(const Frame& f) {
-  bool positive = true;
-  for (std::size_t i = 0; i < f.size(); ++i) positive &= f.depths[i] >= 0.0F && f.sigmas[i] > 0.0F;
-  return positive && are_plausible(reinterpret_cast<const float*>(f.pixels.data()), 2 * f.size()) &&
-         are_plausible(f.depths.data(), f.size()) && are_plausible(f.scores.data(), f.size()) &&
-         are_plausible(f.sigmas.data(), f.size());
 }
 
 template <class Value>
@@ -99,17 +71,11 @@ std::size_t share_descriptors(const std::vector<std::shared_ptr<Frame>>& frames,
   return end;
 }
 
-void check_frame(const Frame& frame, const DescriptorTraits& traits) {
-  const std::size_t n = frame.size();
-  require(frame.depths.size() == n && frame.scores.size() == n && frame.sigmas.size() == n &&
-              frame.descriptors.rows == static_cast<int>(n),
-          "a frame to be saved needs as many depths, scores, sigmas and descriptors as keypoints");
-  require(
-      n == 0 || (frame.descriptors.type() == (traits.binary ? CV_8UC1 : CV_32FC1) &&
-                 frame.descriptors.cols == traits.dimension && frame.descriptors.isContinuous()),
-      "descriptors to be saved must be of the kind that the header says");
-  require(are_plausible(frame) && are_plausible(frame.descriptors),
-          "a frame to be saved holds numbers that are not finite");
+void check_descriptors(const Frame& frame, const DescriptorTraits& traits) {
+  require(frame.size() == 0 ||
+              (frame.descriptors.type() == (traits.binary ? CV_8UC1 : CV_32FC1) &&
+               frame.descriptors.cols == traits.dimension && frame.descriptors.isContinuous()),
+          "descriptors to be saved must be of the kind that the header says");
 }
 
 }  // namespace
@@ -125,7 +91,7 @@ void write_keypoints(const MapParts& parts, const DescriptorTraits& traits, Desc
   const std::size_t size = coded_size(coding, traits.dimension);
   for (const Keyframe& k : parts.keyframes) {
     const Frame& f = *k.frame;
-    check_frame(f, traits);
+    check_descriptors(f, traits);
     file.put_array(reinterpret_cast<const float*>(f.pixels.data()), 2 * f.size());
     file.put_array(f.depths.data(), f.size());
     file.put_array(f.scores.data(), f.size());
@@ -142,8 +108,9 @@ std::size_t keypoint_capacity(SectionReader reader, const DescriptorTraits& trai
   return reader.left() / size;
 }
 
-void read_keypoints(SectionReader reader, const DescriptorTraits& traits,
+void read_keypoints(SectionReader reader, const MapHeader& header,
                     const std::vector<std::shared_ptr<Frame>>& frames) {
+  const DescriptorTraits& traits = header.traits;
   const DescriptorCoding coding = read_coding(reader, traits.binary);
   std::vector<std::string_view> records;
   records.reserve(frames.size());
@@ -154,9 +121,12 @@ void read_keypoints(SectionReader reader, const DescriptorTraits& traits,
   for (std::size_t i = 0; i < frames.size();) i = share_descriptors(frames, i, traits);
   in_parallel(frames.size(), kFramesForOneThread, [&](std::size_t i) {
     fill_frame(records[i].data(), coding, traits, *frames[i]);
-    // What comes out of bytes is finite whatever they are.
-    const bool floats = coding == DescriptorCoding::kFloat32;
-    if (!are_plausible(*frames[i]) || (floats && !are_plausible(frames[i]->descriptors))) {
+    // What comes out of bytes is of unit length whatever they are.
+    const Frame& f = *frames[i];
+    const bool possible = coding != DescriptorCoding::kFloat32 ||
+                          are_possible_descriptors(f.descriptors.ptr<float>(), f.size(),
+                                                   static_cast<std::size_t>(traits.dimension));
+    if (!possible || !are_possible_keypoints(f, header.camera)) {
       reader.fail(fmt::format("a keypoint of keyframe {} has impossible numbers", i));
     }
   });
@@ -174,9 +144,8 @@ void write_globals(const MapParts& parts, const DescriptorTraits& traits, Descri
   for (const Keyframe& k : parts.keyframes) {
     const std::vector<float>& global = k.frame->global;
     if (global.empty()) continue;
-    require(global.size() == static_cast<std::size_t>(dimension) &&
-                are_plausible(global.data(), global.size()),
-            "global descriptors to be saved must be finite and of the header's dimension");
+    require(global.size() == static_cast<std::size_t>(dimension),
+            "global descriptors to be saved must be of the header's dimension");
     encode_descriptor(coding, global.data(), dimension,
                       file.put_room(coded_size(coding, dimension)));
   }
@@ -193,7 +162,7 @@ void read_globals(SectionReader reader, const DescriptorTraits& traits,
     std::vector<float>& global = frames[i]->global;
     global.resize(static_cast<std::size_t>(traits.global_dimension));
     decode_descriptor(coding, coded.data(), traits.global_dimension, global.data());
-    if (!are_plausible(global.data(), global.size())) {
+    if (!are_possible_descriptors(global.data(), 1, global.size())) {
       reader.fail(fmt::format("the global descriptor of keyframe {}", i));
     }
   }

@@ -12,12 +12,25 @@
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/text_file.h"
 #include "map_files/file_bytes.h"
+#include "map_files/map_limits.h"
 #include "map_files/map_sections.h"
 
 namespace dxslam {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{16} << 30;
+FileBytes read_bytes(const std::string& path) {
+  return FileBytes(
+      path, "a dxslam map", kLargestMapFile, kStartBytes,
+      [&](std::string_view start, std::size_t size) { check_start(start, size, path); });
+}
+
+// Points that a file could not hold, far beyond all walls, are no loss.
+void drop_impossible_points(std::vector<MapPoint>& points) {
+  points.erase(std::remove_if(points.begin(), points.end(),
+                              [](const MapPoint& p) { return !is_possible(p); }),
+               points.end());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].id = static_cast<PointId>(i);
+}
 
 KeyframeId number_of(const std::vector<KeyframeId>& ids, KeyframeId id) {
   return static_cast<KeyframeId>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
@@ -84,13 +97,14 @@ class Sections {
   std::string where_;
 };
 
-MapParts read_parts(const Sections& sections, const DescriptorTraits& traits) {
+MapParts read_parts(const Sections& sections, const MapHeader& header) {
+  const DescriptorTraits& traits = header.traits;
   MapParts parts;
   std::vector<std::shared_ptr<Frame>> frames;
   const SectionReader keypoints = sections.needed(kKeypointsId);
   read_keyframes(sections.needed(kKeyframesId), keypoint_capacity(keypoints, traits), parts,
                  frames);
-  read_keypoints(keypoints, traits, frames);
+  read_keypoints(keypoints, header, frames);
   if (const auto globals = sections.optional(kGlobalsId); globals && traits.global_dimension > 0) {
     read_globals(*globals, traits, frames);
   }
@@ -109,6 +123,7 @@ MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
                           const std::vector<StoredLoopEdge>& loops,
                           const std::vector<std::string>& thumbnails) {
   MapSnapshot snapshot{header, take_apart(map), {}, {}};
+  drop_impossible_points(snapshot.parts.points);
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   for (const StoredLoopEdge& loop : loops) {
     const Map::Anchor a = map.anchor_of(loop.a);
@@ -132,8 +147,7 @@ void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFil
   require(
       snapshot.thumbnails.empty() || snapshot.thumbnails.size() == snapshot.parts.keyframes.size(),
       "there must be one thumbnail a keyframe, or none at all");
-  Camera camera = snapshot.header.camera;
-  camera.prepare(path);
+  check_numbers(snapshot, path);
   static_cast<void>(Map(snapshot.parts));  // throws for what could not be loaded again
   const DescriptorTraits& traits = snapshot.header.traits;
   const DescriptorCoding floats =
@@ -147,19 +161,27 @@ void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFil
   write_points(snapshot.parts, file);
   write_loops(snapshot.loops, file);
   write_thumbnails(snapshot.thumbnails, file);
+  const std::string bytes = file.finish();
+  if (bytes.size() > kLargestMapFile) {
+    throw InputError(fmt::format("{}: the map is not saved: {} bytes, expected at most {}", path,
+                                 bytes.size(), kLargestMapFile));
+  }
   remove_stale_temporaries(path);
-  write_file_atomically(path, file.finish());
+  write_file_atomically(path, bytes);
 }
 
 StoredMap load_map(const std::string& path) {
-  const FileBytes file(path, "a dxslam map", kLargestFile);
+  const FileBytes file = read_bytes(path);
   return parse_map(file.data(), file.size(), path);
 }
 
 StoredMap parse_map(const char* bytes, std::size_t size, const std::string& where) {
   const Sections sections(read_sections({bytes, size}, where), where);
   MapHeader header = read_header(sections.needed(kHeaderId), where);
-  MapParts parts = read_parts(sections, header.traits);
+  MapParts parts = read_parts(sections, header);
+  if (parts.keyframes.empty()) {
+    throw InputError(where + ": a map without keyframes, expected at least one");
+  }
   std::vector<StoredLoopEdge> loops;
   if (const auto section = sections.optional(kLoopsId)) loops = read_loops(*section, parts);
   std::vector<std::string> thumbnails;
@@ -174,7 +196,7 @@ StoredMap parse_map(const char* bytes, std::size_t size, const std::string& wher
 }
 
 std::vector<MapFileSection> list_map_sections(const std::string& path) {
-  const FileBytes file(path, "a dxslam map", kLargestFile);
+  const FileBytes file = read_bytes(path);
   std::vector<MapFileSection> list;
   for (const Section& s : read_sections({file.data(), file.size()}, path)) {
     list.push_back({s.id, s.version, s.bytes.size()});

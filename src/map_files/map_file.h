@@ -42,7 +42,7 @@ struct MapSnapshot {
 /// Copies the map with its ids numbered anew (take_apart). `loops` and `thumbnails` are by the ids
 /// of `map`; a loop edge whose keyframe was removed goes to that keyframe's anchor, and is dropped
 /// where both ends have become one or are of different components; `thumbnails` may be shorter than
-/// the ids go.
+/// the ids go. Points that a file cannot hold (map_limits.h) are left out.
 MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
                           const std::vector<StoredLoopEdge>& loops = {},
                           const std::vector<std::string>& thumbnails = {});
@@ -53,9 +53,10 @@ struct MapFileOptions {
 };
 
 /// Writes the file whole or not at all; temporary files that processes left when they were killed
-/// while saving to the same path are removed. Throws InputError if it cannot be written, and
-/// ContractError, leaving the old file, for what could not be loaded again: relations that do not
-/// hold, frames that do not fit the header's traits or each other, numbers that are not finite.
+/// while saving to the same path are removed. Throws, leaving the old file, for what could not be
+/// loaded again: InputError if it cannot be written, has no keyframe or holds numbers beyond the
+/// bounds of map_limits.h; ContractError for relations that do not hold, and frames that do not fit
+/// the header's traits or each other.
 void save_map(const std::string& path, const MapSnapshot& snapshot,
               const MapFileOptions& options = {});
 
@@ -68,7 +69,8 @@ struct StoredMap {
 };
 
 /// Throws InputError, naming the file and what is wrong with it, unless it is a whole and sound map
-/// file of a version that this program knows.
+/// file of a version that this program knows, with a keyframe at least and all numbers within the
+/// bounds of map_limits.h.
 StoredMap load_map(const std::string& path);
 
 /// The same for a file that is in memory already; `where` stands for it in messages.

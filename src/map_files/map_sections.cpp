@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
+#include "map_files/map_limits.h"
 
 namespace dxslam {
 namespace {
-
-constexpr int kLargestDimension = 65536;
 
 // Plain records: what lies in the file, byte by byte.
 struct StoredPose {
@@ -58,13 +58,16 @@ StoredPose stored(const SE3& pose) {
   return out;
 }
 
-SE3 restored(const StoredPose& pose, const SectionReader& reader) {
-  const Eigen::Quaterniond rotation(Eigen::Map<const Eigen::Vector4d>(pose.rotation));
-  const Eigen::Vector3d translation(Eigen::Map<const Eigen::Vector3d>(pose.translation));
-  if (!(std::abs(rotation.norm() - 1.0) < 1e-6) || !translation.allFinite()) {
-    reader.fail("a pose that is no rigid motion");
+SE3 restored(const StoredPose& stored, const SectionReader& reader) {
+  const Eigen::Quaterniond rotation(Eigen::Map<const Eigen::Vector4d>(stored.rotation));
+  const Eigen::Vector3d translation(Eigen::Map<const Eigen::Vector3d>(stored.translation));
+  // Before it is normalised.
+  const bool unit = std::abs(rotation.norm() - 1.0) < 1e-6;
+  const SE3 pose(unit ? rotation : Eigen::Quaterniond::Identity(), translation);
+  if (!unit || !is_possible(pose)) {
+    reader.fail(fmt::format("a pose that is no rigid motion of at most {} m", kFarthestInMap));
   }
-  return {rotation, translation};
+  return pose;
 }
 
 }  // namespace
@@ -104,9 +107,7 @@ MapHeader read_header(SectionReader reader, const std::string& where) {
   traits.dimension = reader.get<std::int32_t>();
   traits.global_dimension = reader.get<std::int32_t>();
   traits.max_distance = reader.get<float>();
-  if (traits.dimension < 1 || traits.dimension > kLargestDimension || traits.global_dimension < 0 ||
-      traits.global_dimension > kLargestDimension || !(traits.max_distance >= 0.0F) ||
-      !std::isfinite(traits.max_distance)) {
+  if (!is_possible(traits)) {
     reader.fail(fmt::format("descriptors of {} and {} numbers, {} apart at most", traits.dimension,
                             traits.global_dimension, traits.max_distance));
   }
@@ -143,8 +144,12 @@ void read_keyframes(SectionReader reader, std::size_t max_keypoints, MapParts& p
   for (std::size_t i = 0; i < count; ++i) {
     StoredKeyframe in;
     std::memcpy(&in, records.data() + i * sizeof in, sizeof in);
-    if (!std::isfinite(in.stamp)) reader.fail(fmt::format("the stamp of keyframe {}", i));
-    if (in.keypoints > max_keypoints) reader.fail("more keypoints than the file has");
+    if (!is_possible_index(in.index) || !is_possible_stamp(in.stamp)) {
+      reader.fail(fmt::format("index or stamp of keyframe {}", i));
+    }
+    if (in.keypoints > std::min(max_keypoints, kMostFrameKeypoints)) {
+      reader.fail("more keypoints than the file or a frame can have");
+    }
     max_keypoints -= in.keypoints;
     auto frame = std::make_shared<Frame>();
     frame->index = in.index;
@@ -196,6 +201,7 @@ void read_points(SectionReader reader, MapParts& parts) {
     p.visible = in.visible;
     p.found = in.found;
     p.descriptor = in.descriptor;
+    if (!is_possible(p)) reader.fail(fmt::format("impossible numbers in point {}", i));
     const std::string_view seen = reader.take(in.observations, sizeof(PointObservation));
     p.observations.resize(in.observations);
     if (!seen.empty()) std::memcpy(p.observations.data(), seen.data(), seen.size());
@@ -242,6 +248,7 @@ std::vector<std::string> read_thumbnails(SectionReader reader, std::size_t keyfr
   thumbnails.reserve(keyframes);
   for (std::size_t i = 0; i < keyframes; ++i) {
     const auto size = reader.get<std::uint32_t>();
+    if (size > kLargestThumbnail) reader.fail(fmt::format("a thumbnail of {} bytes", size));
     thumbnails.emplace_back(reader.take(size, 1));
   }
   reader.expect_end();

@@ -35,7 +35,7 @@ void write_keypoints(const MapParts& parts, const DescriptorTraits& traits, Desc
                      SectionWriter& file);
 /// How many keypoints the section can hold at most, from its size alone.
 std::size_t keypoint_capacity(SectionReader reader, const DescriptorTraits& traits);
-void read_keypoints(SectionReader reader, const DescriptorTraits& traits,
+void read_keypoints(SectionReader reader, const MapHeader& header,
                     const std::vector<std::shared_ptr<Frame>>& frames);
 
 inline constexpr const char* kGlobalsId = "GLOB";

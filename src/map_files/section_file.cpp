@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "io/primitives/text_file.h"
 #include "map_files/crc32c.h"
+#include "map_files/map_limits.h"
 
 namespace dxslam {
 namespace {
@@ -21,7 +22,6 @@ constexpr std::string_view kMagic(
 constexpr std::uint32_t kFormat = 1;
 constexpr std::size_t kIdSize = 4;
 constexpr std::uint32_t kRequiredFlag = 1;
-constexpr std::size_t kLongestText = 4096;
 
 struct FileHeader {
   char magic[8];
@@ -47,14 +47,14 @@ std::uint32_t checksum_of(const FileHeader& header) {
   return crc32c(&header, offsetof(FileHeader, checksum));
 }
 
-// The header of a file that is whole by its own account.
-FileHeader read_header(std::string_view file, const std::string& where) {
+// The header of a file of `size` bytes that is whole by its own account.
+FileHeader read_header(std::string_view file, std::size_t size, const std::string& where) {
   const std::string_view start = file.substr(0, kMagic.size());
   if (start != kMagic.substr(0, start.size()) || file.empty()) {
     throw InputError(fmt::format("{}: is no dxslam map, which would begin with DXMAP", where));
   }
   if (file.size() < sizeof(FileHeader)) {
-    throw InputError(fmt::format("{}: map file is cut short after {} bytes", where, file.size()));
+    throw InputError(fmt::format("{}: map file is cut short after {} bytes", where, size));
   }
   FileHeader header;
   std::memcpy(&header, file.data(), sizeof header);
@@ -67,13 +67,13 @@ FileHeader read_header(std::string_view file, const std::string& where) {
         "{}: map file of format {}, this program reads format {}; a newer dxslam wrote it", where,
         header.format, kFormat));
   }
-  if (file.size() < header.file_size) {
-    throw InputError(fmt::format("{}: map file is cut short: it has {} of {} bytes", where,
-                                 file.size(), header.file_size));
+  if (size < header.file_size) {
+    throw InputError(fmt::format("{}: map file is cut short: it has {} of {} bytes", where, size,
+                                 header.file_size));
   }
-  if (file.size() > header.file_size) {
-    throw InputError(fmt::format("{}: damaged map file: it has {} bytes, expected {}", where,
-                                 file.size(), header.file_size));
+  if (size > header.file_size) {
+    throw InputError(fmt::format("{}: damaged map file: it has {} bytes, expected {}", where, size,
+                                 header.file_size));
   }
   return header;
 }
@@ -109,7 +109,7 @@ void SectionWriter::end_section() {
 }
 
 void SectionWriter::put_text(const std::string& text) {
-  require(text.size() <= kLongestText, "text too long for a map file");
+  require(is_possible_text(text), "a text that a map file cannot hold");
   put(static_cast<std::uint32_t>(text.size()));
   bytes_ += text;
 }
@@ -133,8 +133,12 @@ std::string SectionWriter::finish() {
   return std::move(bytes_);
 }
 
+void check_start(std::string_view start, std::size_t size, const std::string& where) {
+  read_header(start, size, where);
+}
+
 std::vector<Section> read_sections(std::string_view file, const std::string& where) {
-  const FileHeader header = read_header(file, where);
+  const FileHeader header = read_header(file, file.size(), where);
   const auto damaged = [&](const std::string& what) {
     return InputError(fmt::format("{}: damaged map file: {}", where, what));
   };
@@ -177,13 +181,8 @@ std::string_view SectionReader::take(std::size_t count, std::size_t size) {
 
 std::string SectionReader::get_text() {
   const auto size = get<std::uint32_t>();
-  if (size > kLongestText) fail(fmt::format("a text of {} bytes", size));
   const std::string text(take(size, 1));
-  const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte >= 0x20 && byte != 0x7F;
-  });
-  if (!plain) fail("a text with control characters");
+  if (!is_possible_text(text)) fail("a text that is too long or holds control characters");
   return text;
 }
 

@@ -58,6 +58,11 @@ struct Section {
   std::string_view bytes;
 };
 
+/// Throws InputError unless `start`, the first kStartBytes of a file of `size` bytes, is the header
+/// of a map file of this size: large files that are none need not be read.
+inline constexpr std::size_t kStartBytes = 32;
+void check_start(std::string_view start, std::size_t size, const std::string& where);
+
 /// Takes a file apart, checking sizes and checksums of all its parts. The sections point into
 /// `file`. Throws InputError beginning with `where`.
 std::vector<Section> read_sections(std::string_view file, const std::string& where);
