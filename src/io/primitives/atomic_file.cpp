@@ -4,134 +4,181 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
-#include <sys/file.h>
+#include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <optional>
+#include <system_error>
 
 #include "core/error.h"
+#include "io/primitives/temporary_file.h"
 
 namespace dxslam {
 namespace {
 
-// Writes all bytes and flushes them; 0 or the errno of what failed.
-int write_and_sync(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  // Pipes and terminals say EINVAL: they have no disk.
-  return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
-}
+namespace fs = std::filesystem;
 
-int write_and_close(int file, std::string_view bytes) {
-  const int error = write_and_sync(file, bytes);
-  const int close_error = ::close(file) == 0 ? 0 : errno;
-  return error != 0 ? error : close_error;
-}
+constexpr std::size_t kPipePiece = 4096;  // a pipe that is ready takes as much (PIPE_BUF)
+constexpr int kSlice = 50;                // ms
+constexpr int kMostLinks = 40;            // as the kernel has it
+
+std::atomic<bool> waits_for_readers{true};
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(error)));
+  const char* const reason = error == ENXIO || error == EPIPE ? "nobody reads from this pipe"
+                             : error == ETIMEDOUT             ? "nobody read from this pipe"
+                                                              : std::strerror(error);
+  throw InputError(fmt::format("{}: cannot be written: {}", path, reason));
 }
 
-// Behind a link it is the file that is replaced, not the link.
+// Behind a link it is the file that is replaced, not the link, also where that file is missing.
 std::string target_of(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  return fs::exists(path, ignored) ? fs::canonical(path).string() : path;
+  fs::path target = path;
+  std::error_code error;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(target, error); ++links) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) break;
+    target = next.is_absolute() ? next : target.parent_path() / next;
+  }
+  return target.string();
 }
 
-std::string temporary_of(const std::string& target, int process, unsigned number) {
-  return fmt::format("{}.{}.{}.tmp", target, process, number);
-}
-
-// The process that made `name` as a temporary file of `target`; nothing for other files.
-std::optional<pid_t> maker_of(const std::string& name, const std::string& target) {
-  if (name.compare(0, target.size() + 1, target + ".") != 0) return std::nullopt;
-  const char* const end = name.data() + name.size();
-  pid_t process = 0;
-  const auto first = std::from_chars(name.data() + target.size() + 1, end, process);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != '.') return std::nullopt;
-  unsigned number = 0;
-  const auto second = std::from_chars(first.ptr + 1, end, number);
-  if (second.ec != std::errc()) return std::nullopt;
-  if (process <= 0 || name != temporary_of(target, process, number)) return std::nullopt;
-  return process;
-}
-
-// Whoever writes a temporary file holds its lock, also where the process cannot be seen from here
-// (another container on the same folder).
-void remove_unless_locked(const std::string& temporary) {
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
-  if (file < 0) return;
-  if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(temporary.c_str());
-  ::close(file);
+std::string folder_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
 }
 
 // The new name is durable once its folder is; a folder that cannot be synced is no failure.
 void sync_folder_of(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  const int directory = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
+  const int directory = ::open(folder_of(path).c_str(), O_RDONLY | O_CLOEXEC);
   if (directory < 0) return;
   ::fsync(directory);
   ::close(directory);
 }
 
+// 0 or the errno of what failed.
+int write_to_stream(int stream, std::string_view bytes) {
+  while (!bytes.empty()) {
+    pollfd ready{stream, POLLOUT, 0};
+    if (::poll(&ready, 1, kSlice) == 0) {
+      if (!waits_for_readers) return ETIMEDOUT;
+      continue;
+    }
+    const ssize_t written = ::write(stream, bytes.data(), std::min(bytes.size(), kPipePiece));
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (written < 0) return errno;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+// 1 or 2 where `path` stands for stdout or stderr; -1 for all else.
+int console_descriptor(const std::string& path) {
+  for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
+    if (path == (descriptor == STDOUT_FILENO ? "/dev/stdout" : "/dev/stderr") ||
+        path == fmt::format("/dev/fd/{}", descriptor) ||
+        path == fmt::format("/proc/self/fd/{}", descriptor)) {
+      return descriptor;
+    }
+  }
+  return -1;
+}
+
+// Not blocking: opening a pipe must not wait for somebody to read from it. The console is written
+// to where it stands, also if it is a file.
+int open_stream(const std::string& path) {
+  const int console = console_descriptor(path);
+  const int stream = console >= 0
+                         ? ::dup(console)
+                         : ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (stream < 0) fail(path, errno);
+  return stream;
+}
+
+void write_stream(const std::string& path, std::string_view bytes) {
+  const int stream = open_stream(path);
+  int error = write_to_stream(stream, bytes);
+  if (::close(stream) != 0 && error == 0) error = errno;
+  if (error != 0) fail(path, error);
+}
+
+// What `path` is; st_mode 0 for what is not there.
+struct stat status_of(const std::string& path) {
+  struct stat status{};
+  if (::stat(path.c_str(), &status) == 0) return status;
+  if (errno != ENOENT) fail(path, errno);
+  return {};
+}
+
+bool is_stream(const std::string& path, const struct stat& status) {
+  return status.st_mode != 0 && (!S_ISREG(status.st_mode) || console_descriptor(path) >= 0);
+}
+
+// A file that its owner protected from writing is not replaced either.
+void require_replaceable(const std::string& path, const struct stat& status) {
+  if (status.st_mode != 0 && ::access(path.c_str(), W_OK) != 0) fail(path, errno);
+}
+
 }  // namespace
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {
-  static std::atomic<unsigned> counter{0};
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    const int device = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (device < 0) fail(path, errno);
-    if (const int error = write_and_close(device, bytes); error != 0) fail(path, error);
+  const struct stat status = status_of(path);
+  if (is_stream(path, status)) {
+    write_stream(path, bytes);
     return;
   }
+  const std::shared_lock lock(files_being_written());
+  require_replaceable(path, status);
   const std::string target = target_of(path);
-  const std::string temporary = temporary_of(target, ::getpid(), counter++);
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file < 0) fail(path, errno);
-  ::flock(file, LOCK_EX | LOCK_NB);  // until it is closed
-  int error = write_and_sync(file, bytes);
-  if (error == 0 && std::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-  ::close(file);
-  if (error != 0) {
-    ::unlink(temporary.c_str());
-    fail(path, error);
+  try {
+    TemporaryFile file(target);
+    if (status.st_mode != 0) file.take_rights_of(status);
+    file.write(bytes);
+    file.publish();
+  } catch (const std::system_error& e) {
+    fail(path, e.code().value());
   }
   sync_folder_of(target);
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
+void require_writable(const std::string& path) {
+  const struct stat status = status_of(path);
+  if (is_stream(path, status)) {
+    ::close(open_stream(path));
+    return;
+  }
+  require_replaceable(path, status);
+  try {
+    TemporaryFile file(target_of(path));
+  } catch (const std::system_error& e) {
+    fail(path, e.code().value());
   }
 }
 
-void remove_stale_temporaries(const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path target = target_of(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+void make_folder(const std::string& folder) {
   std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string name = it->path().filename().string();
-    const std::optional<pid_t> maker = maker_of(name, target.filename().string());
-    if (maker && ::kill(*maker, 0) != 0 && errno == ESRCH) remove_unless_locked(it->path());
+  fs::create_directories(folder, error);
+  if (error) {
+    throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
   }
+  remove_temporaries_in(folder, "");
 }
+
+void remove_stale_temporaries(const std::string& path) {
+  const std::string target = target_of(path);
+  remove_temporaries_in(folder_of(target), fs::path(target).filename().string());
+}
+
+std::shared_mutex& files_being_written() {
+  static std::shared_mutex& mutex = *new std::shared_mutex;  // outlives every thread
+  return mutex;
+}
+
+void stop_waiting_for_readers() { waits_for_readers = false; }
 
 }  // namespace dxslam

@@ -110,16 +110,21 @@ std::ifstream open_file(const std::string& path, const std::string& expected) {
                                errno == 0 ? "" : std::strerror(errno), expected));
 }
 
+// Letters left out, added, replaced, or swapped with their neighbour.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> two_up(b.size() + 1);
+  std::vector<std::size_t> up(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    two_up.swap(up);
+    up.swap(row);
     row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substitute = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
+      const std::size_t substitute = up[j] + (a[i] == b[j] ? 0 : 1);
+      row[j + 1] = std::min({row[j] + 1, up[j + 1] + 1, substitute});
+      const bool swapped = i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j];
+      if (swapped) row[j + 1] = std::min(row[j + 1], two_up[j - 1] + 1);
     }
   }
   return row.back();

@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "io/primitives/utf8.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +34,33 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
+// C0 with DEL, and C1, which is two bytes long.
+bool is_control(std::string_view character) {
+  const auto first = static_cast<std::uint8_t>(character[0]);
+  if (character.size() == 1) return first < 0x20 || first == 0x7F;
+  return first == 0xC2 && static_cast<std::uint8_t>(character[1]) < 0xA0;
+}
+
 }  // namespace
+
+std::string printable(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(1, length));
+    text.remove_prefix(character.size());
+    if (length > 0 && !is_control(character)) {
+      out += character;
+    } else if (character == "\n") {
+      out += "\\n";
+    } else {
+      for (const char byte : character) {
+        out += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(byte));
+      }
+    }
+  }
+  return out;
+}
 
 std::string valid_utf8(std::string_view text) {
   std::string valid;

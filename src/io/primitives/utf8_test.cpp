@@ -33,5 +33,17 @@ TEST(JsonText, TakesNamesThatAreNotUtf8) {
   EXPECT_EQ(text.back(), '\n');
 }
 
+TEST(Printable, LeavesNothingThatCommandsATerminal) {
+  EXPECT_EQ(printable("a b~\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80"),
+            "a b~\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80");
+  EXPECT_EQ(printable("\x1B[2Jx\r\n\t\x7F"), "\\x1b[2Jx\\x0d\\n\\x09\\x7f");
+  EXPECT_EQ(printable("\xC2\x9B"
+                      "2J\xC2\xA0"),
+            "\\xc2\\x9b2J\xC2\xA0")
+      << "C1 is escape, too";
+  EXPECT_EQ(printable("\x9B\xC3"), "\\x9b\\xc3");
+  EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
+}
+
 }  // namespace
 }  // namespace dxslam
