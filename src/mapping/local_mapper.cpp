@@ -132,9 +132,9 @@ std::vector<KeyframeId> LocalMapper::cull_keyframes(KeyframeId newest) {
   return culled;
 }
 
-int LocalMapper::adjust_full_bundle(const BundleOptions& options) {
+int LocalMapper::adjust_full_bundle(const BundleOptions& options, const MayGoOn& may_go_on) {
   LocalBundle bundle = gather_full_bundle(map_, camera_);
-  const BundleReport result = adjust_bundle(camera_, bundle.problem, options);
+  const BundleReport result = adjust_bundle(camera_, bundle.problem, options, may_go_on);
   return result.usable ? apply_local_bundle(bundle, result, map_) : 0;
 }
 

@@ -11,6 +11,7 @@
 #include "map/local_map.h"
 #include "map/map.h"
 #include "mapping/mapping_options.h"
+#include "optimization/may_go_on.h"
 #include "tracking/tracking_types.h"
 
 namespace dxslam {
@@ -44,7 +45,8 @@ class LocalMapper {
   void refine(MappingReport& report);
 
   /// Adjusts all keyframes and points together. Returns the observations unbound as outliers.
-  int adjust_full_bundle(const BundleOptions& options);
+  /// Leaves the map as it is where `may_go_on` says no.
+  int adjust_full_bundle(const BundleOptions& options, const MayGoOn& may_go_on = {});
 
   /// What comes from now on is of another recording than the map so far.
   void begin_recording();

@@ -3,6 +3,8 @@
 #include "slam/backend.h"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <unordered_map>
 
 #include "core/error.h"
@@ -139,14 +141,16 @@ RelocalizationAnswer Backend::relocalize(const Frame& frame) {
   return answer;
 }
 
-void Backend::finish() {
+void Backend::finish(const MayGoOn& may_go_on) {
   if (!grown_) return;
-  const bool whole = options_.final_bundle && map().keyframe_count() > 1;
-  if (whole) {
+  if (options_.final_bundle && map().keyframe_count() > 1) {
     closer_.cancel();
-    mapper_.adjust_full_bundle(options_.full_bundle);
-  } else {
-    closer_.wait(mapper_.map());
+    if (!must_stop(may_go_on)) mapper_.adjust_full_bundle(options_.full_bundle, may_go_on);
+    return;
+  }
+  while (!closer_.poll(mapper_.map()) && closer_.bundle_pending()) {
+    if (must_stop(may_go_on)) closer_.cancel();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "features/extractor.h"
 #include "loop_closing/loop_closer.h"
 #include "mapping/local_mapper.h"
+#include "optimization/may_go_on.h"
 #include "relocalization/consensus.h"
 #include "relocalization/relocalizer.h"
 #include "slam/loop_log.h"
@@ -49,7 +50,8 @@ class Backend {
 
   /// Ends what runs in the background and, if so configured, adjusts the whole map once more; a map
   /// that was only localized in stays as it is.
-  void finish();
+  /// Neither, as soon as `may_go_on` says no.
+  void finish(const MayGoOn& may_go_on = {});
 
   const Map& map() const { return mapper_.map(); }
   const std::vector<LoopEdge>& closed_loops() const { return closer_.closed_loops(); }

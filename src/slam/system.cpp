@@ -86,7 +86,7 @@ bool System::try_process(const RgbdImage& image) {
   return true;
 }
 
-void System::finish() {
+void System::finish(const MayGoOn& may_go_on) {
   if (finished_) return;
   finished_ = true;
   extracted_.close();  // each thread closes the queue behind it when its own runs dry
@@ -94,7 +94,7 @@ void System::finish() {
   threads_.clear();
   rethrow();
   const Stopwatch watch;
-  backend_.finish();
+  backend_.finish(may_go_on);
   times_.add("full_bundle", watch.ms());
   note_map_size();
 }

@@ -12,6 +12,7 @@
 
 #include "core/trajectory.h"
 #include "features/extractor.h"
+#include "optimization/may_go_on.h"
 #include "slam/backend.h"
 #include "slam/bounded_queue.h"
 #include "slam/frame_log.h"
@@ -89,8 +90,9 @@ class System {
   /// mapping never holds up tracking.
   bool try_process(const RgbdImage& image);
   /// Waits until all is done, adjusts the whole map if so configured, and stops the threads. Only
-  /// then may the results below be read. Further calls do nothing.
-  void finish();
+  /// then may the results below be read. Further calls do nothing. Where `may_go_on` says no, what
+  /// would adjust the whole map is given up and the map left as tracking and mapping made it.
+  void finish(const MayGoOn& may_go_on = {});
 
   /// Every frame given, in order. The ones that began a map have no reference.
   const FrameLog& frames() const { return frames_; }

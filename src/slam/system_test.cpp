@@ -213,5 +213,33 @@ TEST(System, ReportsTheMapSizeOfEachRecordingAndSavesAsItGoes) {
   EXPECT_EQ(system->trajectory().size(), static_cast<std::size_t>(2 * kFrames));
 }
 
+TEST(System, GivesUpTheLastAdjustmentWhereItMustStop) {
+  const auto adjusted = make_system(deterministic());
+  const auto stopped = make_system(deterministic());
+  Map before;
+  stopped->set_autosave(
+      1, [&](const Map& map, const std::vector<LoopEdge>&) { before = Map(take_apart(map)); });
+  feed(*adjusted, 0, kFrames);
+  feed(*stopped, 0, kFrames);
+  adjusted->finish();
+  stopped->finish([] { return false; });
+  ASSERT_EQ(stopped->keyframe_trajectory().size(), adjusted->keyframe_trajectory().size());
+  EXPECT_EQ(stopped->trajectory().size(), static_cast<std::size_t>(kFrames));
+  // The copy has ids of its own, in the same order.
+  const auto farthest = [&](const Map& map) {
+    double distance = 0.0;
+    const std::vector<KeyframeId> ids = map.keyframe_ids();
+    const std::vector<KeyframeId> old_ids = before.keyframe_ids();
+    for (std::size_t i = 0; i < ids.size() && i < old_ids.size(); ++i) {
+      distance =
+          std::max(distance, translation_distance(map.keyframe(ids[i]).world_from_camera,
+                                                  before.keyframe(old_ids[i]).world_from_camera));
+    }
+    return distance;
+  };
+  EXPECT_GT(farthest(adjusted->map()), 0.0);
+  EXPECT_EQ(farthest(stopped->map()), 0.0);
+}
+
 }  // namespace
 }  // namespace dxslam
