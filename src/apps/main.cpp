@@ -1,38 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
-#include <cstdio>
+#include <cerrno>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <sstream>
 
 #include "apps/commands.h"
+#include "apps/console.h"
+#include "apps/process.h"
+#include "apps/usage.h"
 #include "core/error.h"
 
-int main(int argc, char** argv) {
-  using namespace dxslam;
-  CLI::App app("dxslam: visual SLAM with deep features for RGB-D cameras", "dxslam");
+namespace dxslam::apps {
+namespace {
+
+void add_commands(CLI::App& app) {
   app.set_version_flag("--version", "dxslam " DXSLAM_VERSION);
   app.require_subcommand(1);
-  apps::add_run_command(app);
-  apps::add_lifelong_command(app);
-  apps::add_eval_command(app);
-  apps::add_synth_command(app);
-  apps::add_config_command(app);
-  apps::add_features_command(app);
-  apps::add_vocab_command(app);
-  apps::add_loops_command(app);
-  apps::add_map_command(app);
-  apps::add_relocalize_command(app);
+  add_run_command(app);
+  add_lifelong_command(app);
+  add_eval_command(app);
+  add_synth_command(app);
+  add_config_command(app);
+  add_features_command(app);
+  add_vocab_command(app);
+  add_loops_command(app);
+  add_map_command(app);
+  add_relocalize_command(app);
+}
+
+// Help, or what is wrong with the command line.
+int say_usage(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream out;
+  std::ostringstream unused;
+  const int code = app.exit(error, out, unused);
+  print_text(out.str());
+  if (code == 0) return kSuccess;
+  warn("{}; see {} --help", error.what(), command_line_of(app));
+  return kBadUsage;
+}
+
+int run_command(int argc, char** argv) {
+  CLI::App app("dxslam: visual SLAM with deep features for RGB-D cameras", "dxslam");
+  add_commands(app);
+  refuse_empty_values(app);
   try {
+    require_known_commands(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {
     return e.get_exit_code();
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? apps::kSuccess : apps::kBadUsage;
+    return say_usage(app, e);
   } catch (const InputError& e) {
-    std::fprintf(stderr, "dxslam: %s\n", e.what());
-    return apps::kBadInput;
+    warn("{}", e.what());
+    return kBadInput;
+  } catch (const std::filesystem::filesystem_error& e) {
+    warn("{}: {}", e.path1().string(), e.code().message());
+    return kBadInput;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "dxslam: internal error: %s\n", e.what());
-    return apps::kInternalError;
+    warn("internal error: {}", e.what());
+    return kInternalError;
   }
-  return apps::kSuccess;
+  return kSuccess;
+}
+
+// A reader that went away wanted no more: no failure. All else is.
+int check_stdout(int code) {
+  const int error = stdout_error();
+  if (error == 0 || error == EPIPE || stop_requested()) return code;
+  warn("stdout cannot be written: {}", std::strerror(error));
+  return code == kSuccess ? kBadInput : code;
+}
+
+int after_stop(int code) {
+  const bool goes_well = code == kSuccess || code == kTrackingFailed;
+  return stop_requested() && goes_well ? kInterrupted : code;
+}
+
+}  // namespace
+}  // namespace dxslam::apps
+
+int main(int argc, char** argv) {
+  using namespace dxslam::apps;
+  prepare_process();
+  return end_process(check_stdout(after_stop(run_command(argc, argv))));
 }

@@ -2,26 +2,134 @@
 // Copyright 2026 The dxslam authors
 #include "apps/process.h"
 
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <atomic>
-#include <csignal>
+#include <cerrno>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "apps/commands.h"
+#include "apps/console.h"
+#include "io/primitives/atomic_file.h"
 
 namespace dxslam::apps {
 namespace {
 
-std::atomic<bool> requested{false};
+using Clock = std::chrono::steady_clock;
 
-void request_stop(int) { requested = true; }
+constexpr std::chrono::milliseconds kGrace{1000};       // from the stop to the end of the process
+constexpr std::chrono::milliseconds kAfterSaving{500};  // for the last words
+
+struct State {
+  std::stop_source stop;
+  std::mutex mutex;
+  std::condition_variable saved;
+  int unsaved = 0;          // guarded by mutex
+  Clock::time_point quiet;  // guarded by mutex; when unsaved last became 0
+  std::atomic<bool> abandoned{false};
+};
+
+// Never destroyed: the watching thread and abandoned ones live as long as the process.
+State& state() {
+  static State& the = *new State;
+  return the;
+}
+
+void open_console() {
+  for (int descriptor = 0; descriptor <= 2; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest free number is this one.
+    static_cast<void>(::open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY));
+  }
+}
+
+sigset_t stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  struct sigaction hang_up{};
+  if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) {
+    sigaddset(&signals, SIGHUP);
+  }
+  return signals;
+}
+
+// Ends the process once nothing is unsaved and the last words had their time.
+void end_when_saved() {
+  State& s = state();
+  std::unique_lock lock(s.mutex);
+  const Clock::time_point stopped = Clock::now();
+  for (;;) {
+    s.saved.wait(lock, [&] { return s.unsaved == 0; });
+    const Clock::time_point end = std::max(stopped + kGrace, s.quiet + kAfterSaving);
+    if (Clock::now() >= end) break;
+    s.saved.wait_until(lock, end);
+  }
+  // Both locks are kept: nothing can be begun any more.
+  const std::unique_lock files(files_being_written());
+  warn("stopped by a signal");
+  ::_exit(kInterrupted);
+}
+
+void watch(const sigset_t& signals) {
+  int signal = 0;
+  sigwait(&signals, &signal);
+  state().stop.request_stop();
+  stop_waiting_for_readers();
+  std::thread(end_when_saved).detach();
+  for (bool said = false;; said = true) {
+    sigwait(&signals, &signal);
+    if (!said) warn("stopping; Ctrl-\\ (SIGQUIT) ends it at once and saves nothing");
+  }
+}
 
 }  // namespace
 
-void catch_signals() {
-  struct sigaction action{};
-  action.sa_handler = request_stop;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+void prepare_process() {
+  open_console();
+  ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);
+  // Threads inherit the mask, so only the one that waits for the signals gets them.
+  const sigset_t signals = stop_signals();
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  state();
+  std::thread(watch, signals).detach();
 }
 
-bool stop_requested() { return requested; }
+bool stop_requested() { return state().stop.stop_requested(); }
+
+std::stop_token stop_token() { return state().stop.get_token(); }
+
+void sleep_until(std::chrono::steady_clock::time_point when) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  never.wait_until(lock, stop_token(), when, [] { return false; });
+}
+
+Unsaved::Unsaved() {
+  const std::lock_guard lock(state().mutex);
+  ++state().unsaved;
+}
+
+Unsaved::~Unsaved() {
+  const std::lock_guard lock(state().mutex);
+  --state().unsaved;
+  state().quiet = Clock::now();
+  state().saved.notify_all();
+}
+
+void abandon_thread() { state().abandoned = true; }
+
+int end_process(int code) {
+  if (state().abandoned) ::_exit(code);
+  return code;
+}
 
 }  // namespace dxslam::apps

@@ -2,11 +2,11 @@
 // Copyright 2026 The dxslam authors
 #include "apps/progress.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "apps/console.h"
 
 namespace dxslam::apps {
 namespace {
@@ -36,17 +36,16 @@ void Progress::draw(std::size_t done, const std::string& state, double elapsed) 
   const std::string text =
       fmt::format("{}/{}  {:.1f}/s  {}  {:.0f} s left", done, total_, rate, state, left);
   if (!terminal_) {
-    fmt::print(stderr, "{}: {}\n", title_, text);
+    draw_text(fmt::format("{}: {}\n", title_, text));
     return;
   }
   const std::size_t filled = total_ == 0 ? kBarWidth : kBarWidth * std::min(done, total_) / total_;
-  fmt::print(stderr, "\r{} [{}{}] {}\033[K", title_, std::string(filled, '#'),
-             std::string(kBarWidth - filled, '.'), text);
-  std::fflush(stderr);
+  draw_text(fmt::format("\r{} [{}{}] {}\033[K", title_, std::string(filled, '#'),
+                        std::string(kBarWidth - filled, '.'), text));
 }
 
 void Progress::finish() {
-  if (terminal_ && drawn_) fmt::print(stderr, "\n");
+  if (terminal_ && drawn_) draw_text("\n");
 }
 
 }  // namespace dxslam::apps

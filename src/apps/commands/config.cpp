@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "io/calibration/calibration.h"
 #include "io/formats/options_yaml.h"
 #include "slam/system_options.h"
@@ -15,13 +16,13 @@ namespace {
 
 void dump(const std::string& camera) {
   if (!camera.empty()) {
-    fmt::print("{}", camera_preset_text(camera));
+    print_text(camera_preset_text(camera));
     return;
   }
-  fmt::print(
+  print_text(fmt::format(
       "# The default configuration of dxslam {}. Give a file with the lines to change to\n"
       "# dxslam run --config; what it leaves out keeps its default.\n{}",
-      DXSLAM_VERSION, dump_options_yaml(SystemOptions{}));
+      DXSLAM_VERSION, dump_options_yaml(SystemOptions{})));
 }
 
 }  // namespace

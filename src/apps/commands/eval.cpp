@@ -9,7 +9,9 @@
 
 #include "apps/commands.h"
 #include "apps/commands/eval_openloris.h"
+#include "apps/console.h"
 #include "apps/statistics_json.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "evaluation/ate.h"
 #include "evaluation/rpe.h"
@@ -40,13 +42,13 @@ Alignment alignment_of(const std::string& name) {
 }
 
 void print_header() {
-  fmt::print("{:<14} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7}\n", "", "rmse", "mean",
-             "median", "std", "min", "max", "count");
+  print("{:<14} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7}\n", "", "rmse", "mean", "median",
+        "std", "min", "max", "count");
 }
 
 void print_row(const std::string& label, const ErrorStatistics& s) {
-  fmt::print("{:<14} {:>10.6f} {:>10.6f} {:>10.6f} {:>10.6f} {:>10.6f} {:>10.6f} {:>7}\n", label,
-             s.rmse, s.mean, s.median, s.std, s.min, s.max, s.count);
+  print("{:<14} {:>10.6f} {:>10.6f} {:>10.6f} {:>10.6f} {:>10.6f} {:>10.6f} {:>7}\n", label, s.rmse,
+        s.mean, s.median, s.std, s.min, s.max, s.count);
 }
 
 void write_json(const std::string& path, const nlohmann::ordered_json& report) {
@@ -62,9 +64,9 @@ void evaluate_ate_command(const EvalArguments& arguments) {
   print_row("ATE (m)", report.position);
   const std::string& alignment = arguments.alignment;
   const double scale = report.truth_from_estimate.scale();
-  fmt::print("{} of {} estimated poses matched to {} true poses, alignment {}{}\n",
-             report.pairs.size(), estimate.size(), truth.size(), alignment,
-             alignment == "sim3" ? fmt::format(", scale {:.6f}", scale) : "");
+  print("{} of {} estimated poses matched to {} true poses, alignment {}{}\n", report.pairs.size(),
+        estimate.size(), truth.size(), alignment,
+        alignment == "sim3" ? fmt::format(", scale {:.6f}", scale) : "");
   write_json(arguments.json, {{"metric", "ate"},
                               {"unit", "m"},
                               {"alignment", alignment},
@@ -97,7 +99,7 @@ void evaluate_rpe_command(const EvalArguments& arguments) {
   print_header();
   print_row("RPE (m)", report.translation);
   print_row("RPE (degrees)", report.rotation);
-  fmt::print("over {:g} {}, {} pairs\n", options.delta, arguments.unit, report.translation.count);
+  print("over {:g} {}, {} pairs\n", options.delta, arguments.unit, report.translation.count);
   write_json(arguments.json, {{"metric", "rpe"},
                               {"delta", options.delta},
                               {"delta_unit", arguments.unit},
@@ -124,7 +126,7 @@ CLI::App* add_metric(CLI::App& eval, const char* name, const char* about,
   metric
       ->add_option("--max-difference", arguments->max_difference,
                    "largest difference of matched stamps, seconds (0.01)")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(number(0.0, 1000.0))
       ->option_text("S");
   metric->add_option("--json", arguments->json, "also write the figures to a JSON file")
       ->option_text("FILE");
@@ -149,7 +151,7 @@ void add_eval_command(CLI::App& app) {
   CLI::App* rpe = add_metric(
       *eval, "rpe", "relative pose error: difference of motions over a fixed distance", relative);
   rpe->add_option("--delta", relative->delta, "that distance (1)")
-      ->check(CLI::Range(1e-6, 1e9))
+      ->check(number(1e-6, 1e9))
       ->option_text("N");
   rpe->add_option("--delta-unit", relative->unit, "frames or seconds (frames)")
       ->check(CLI::IsMember({"frames", "seconds"}))

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include "apps/commands/eval_openloris.h"
+#include "apps/console.h"
 #include "apps/statistics_json.h"
+#include "apps/usage.h"
 
 #include <fmt/format.h>
 
@@ -75,20 +77,20 @@ std::string cell(bool measured, double value) {
 
 void print_sequence(const OpenlorisSequenceReport& s) {
   const bool matched = !s.errors.empty();
-  fmt::print("{:<6} {:>7.1f} {:>7} {:>7} {:>8.3f} {:>8.3f} {:>8} {:>9} {:>9} {:>9} {:>8} {:>8}\n",
-             s.number, s.duration(), s.poses, s.errors.size(), s.tracked_rate, s.correct_rate,
-             cell(matched, s.correct_rate_once_started), cell(matched, s.position.rmse),
-             cell(s.correct_position.count > 0, s.correct_position.rmse),
-             cell(matched, s.angle.rmse), cell(matched, s.start_delay),
-             cell(s.relocalization_score.has_value(), s.relocalization_score.value_or(0.0)));
+  print("{:<6} {:>7.1f} {:>7} {:>7} {:>8.3f} {:>8.3f} {:>8} {:>9} {:>9} {:>9} {:>8} {:>8}\n",
+        s.number, s.duration(), s.poses, s.errors.size(), s.tracked_rate, s.correct_rate,
+        cell(matched, s.correct_rate_once_started), cell(matched, s.position.rmse),
+        cell(s.correct_position.count > 0, s.correct_position.rmse), cell(matched, s.angle.rmse),
+        cell(matched, s.start_delay),
+        cell(s.relocalization_score.has_value(), s.relocalization_score.value_or(0.0)));
 }
 
 void print_report(const std::string& file, const OpenlorisReport& report) {
-  fmt::print("{}: scene {}, poses of {}, {}\n", file, report.scene, report.frame,
-             thresholds(report.options));
-  fmt::print("{:<6} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9} {:>8} {:>8}\n", "seq",
-             "time s", "poses", "matched", "tracked", "correct", "CR-T", "ATE m", "C-ATE m",
-             "AOE deg", "start s", "reloc");
+  print("{}: scene {}, poses of {}, {}\n", file, report.scene, report.frame,
+        thresholds(report.options));
+  print("{:<6} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9} {:>8} {:>8}\n", "seq",
+        "time s", "poses", "matched", "tracked", "correct", "CR-T", "ATE m", "C-ATE m", "AOE deg",
+        "start s", "reloc");
   double duration = 0.0;
   std::size_t poses = 0;
   std::size_t matched = 0;
@@ -106,14 +108,13 @@ void print_report(const std::string& file, const OpenlorisReport& report) {
     }
   }
   const OpenlorisTotals& t = report.totals;
-  fmt::print("{:<6} {:>7.1f} {:>7} {:>7} {:>8.3f} {:>8.3f} {:>8} {:>9} {:>9}\n", "scene", duration,
-             poses, matched, t.tracked_rate, t.correct_rate,
-             cell(matched > 0, t.correct_rate_once_started), cell(matched > 0, t.position),
-             cell(correct, t.correct_position));
+  print("{:<6} {:>7.1f} {:>7} {:>7} {:>8.3f} {:>8.3f} {:>8} {:>9} {:>9}\n", "scene", duration,
+        poses, matched, t.tracked_rate, t.correct_rate,
+        cell(matched > 0, t.correct_rate_once_started), cell(matched > 0, t.position),
+        cell(correct, t.correct_position));
   if (absent.empty()) return;
-  fmt::print(
-      "not in the result, counted as never localized: seq {}; without them correct is {:.3f}\n",
-      fmt::join(absent, ", "), t.correct_rate_present);
+  print("not in the result, counted as never localized: seq {}; without them correct is {:.3f}\n",
+        fmt::join(absent, ", "), t.correct_rate_present);
 }
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -207,7 +208,7 @@ void run(const Arguments& arguments) {
   std::vector<OpenlorisSystem> systems;
   for (const std::string& file : arguments.results) {
     const OpenlorisReport report = evaluate(arguments, file);
-    if (!results.empty()) fmt::print("\n");
+    if (!results.empty()) print("\n");
     print_report(file, report);
     results.push_back(to_json(file, report));
     add_to_picture(systems, file, report);
@@ -240,12 +241,12 @@ void add_eval_openloris_command(CLI::App& eval) {
   command
       ->add_option("--max-position", arguments->max_position,
                    "largest error of a correct position, metres, or inf (1 to 5, by the scene)")
-      ->check(CLI::Range(1e-9, kNoLimit))
+      ->check(number(1e-9, kNoLimit))
       ->option_text("M");
   command
       ->add_option("--max-angle", arguments->max_angle,
                    "largest error of a correct orientation, degrees, or inf (30)")
-      ->check(CLI::Range(1e-9, kNoLimit))
+      ->check(number(1e-9, kNoLimit))
       ->option_text("DEG");
   command->add_option("--align", arguments->alignment, "se3 or sim3 (with scale)")
       ->check(CLI::IsMember({"se3", "sim3"}))

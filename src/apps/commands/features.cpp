@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
 #include "io/formats/npz_writer.h"
@@ -65,9 +67,9 @@ void extract(const ExtractArguments& arguments) {
     const Features features = extractor->extract(image, true);
     double total = 0.0;
     for (const StageTime& stage : extractor->last_stages()) total += stage.ms;
-    fmt::print("{}: {} keypoints, descriptors of {} {}, global descriptor of {}, {:.1f} ms\n", path,
-               features.size(), features.descriptors.cols,
-               extractor->traits().binary ? "bytes" : "floats", features.global.size(), total);
+    print("{}: {} keypoints, descriptors of {} {}, global descriptor of {}, {:.1f} ms\n", path,
+          features.size(), features.descriptors.cols,
+          extractor->traits().binary ? "bytes" : "floats", features.global.size(), total);
     if (!arguments.npz.empty()) {
       write_features(features, (fs::path(arguments.npz) / archive_name(path)).string());
     }
@@ -80,11 +82,15 @@ void add_feature_options(CLI::App& command, FeatureArguments& arguments) {
   command.add_option(
       "--features", arguments.features,
       "name of an extractor, or a model manifest (default: hfnet, or orb without it)");
-  command.add_option("--max-keypoints", arguments.options.max_keypoints,
-                     "most keypoints per image");
-  command.add_option("--spread", arguments.options.spread,
-                     "share of the keypoints given out evenly over the image (0 to 1)");
+  command
+      .add_option("--max-keypoints", arguments.options.max_keypoints, "most keypoints per image")
+      ->check(range_of<ExtractorOptions>("max_keypoints"));
+  command
+      .add_option("--spread", arguments.options.spread,
+                  "share of the keypoints given out evenly over the image (0 to 1)")
+      ->check(number(0.0, 1.0));
   command.add_option("--threads", arguments.options.threads, "threads of the network")
+      ->check(range_of<ExtractorOptions>("threads"))
       ->capture_default_str();
   command.add_option("--precision", arguments.options.precision, "auto, f32, bf16 or int8")
       ->capture_default_str();
@@ -95,6 +101,7 @@ void add_feature_options(CLI::App& command, FeatureArguments& arguments) {
 void add_low_light_option(CLI::App& command, double& gain) {
   command.add_option("--low-light", gain, "darken the images first (low-light model)")
       ->expected(0, 1)
+      ->check(low_light_gain())
       ->default_str(fmt::format("{}", LowLight::kDefaultGain))
       ->type_name("[=GAIN]");
 }

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
 #include "io/primitives/atomic_file.h"
@@ -123,17 +125,17 @@ void print_table(const std::vector<Contestant>& contestants, std::size_t frames,
   for (const Contestant& c : contestants) {
     if (c.name == kReference) reference = percentile(c.totals, 0.5);
   }
-  fmt::print("{} frames, {} threads, ms per image\n", frames, threads);
-  fmt::print("{:<28} {:>5} {:>8} {:>8} {:>6}  {}\n", "features", "", "median", "p95", "x ORB",
-             "medians of the stages");
+  print("{} frames, {} threads, ms per image\n", frames, threads);
+  print("{:<28} {:>5} {:>8} {:>8} {:>6}  {}\n", "features", "", "median", "p95", "x ORB",
+        "medians of the stages");
   for (const Contestant& c : contestants) {
     const double median = percentile(c.totals, 0.5);
     std::string stages;
     for (const auto& [name, times] : c.stages) {
       stages += fmt::format("{} {:.2f}  ", name, percentile(times, 0.5));
     }
-    fmt::print("{:<28} {:>5} {:>8.2f} {:>8.2f} {:>6.2f}  {}\n", c.name, c.extractor->precision(),
-               median, percentile(c.totals, 0.95), median / reference, stages);
+    print("{:<28} {:>5} {:>8.2f} {:>8.2f} {:>6.2f}  {}\n", c.name, c.extractor->precision(), median,
+          percentile(c.totals, 0.95), median / reference, stages);
   }
 }
 
@@ -179,9 +181,10 @@ void add_bench_command(CLI::App& app) {
                    "names or manifests, separated by commas (default: all whose files are there)")
       ->delimiter(',');
   command->add_option("--frames", arguments->frames, "frames, evenly over the recording")
-      ->check(CLI::Range(1, 100000))
+      ->check(whole_number(1, 100000))
       ->capture_default_str();
   command->add_option("--threads", arguments->options.threads, "threads, for all alike")
+      ->check(range_of<ExtractorOptions>("threads"))
       ->capture_default_str();
   command->add_option("--precision", arguments->options.precision, "auto, f32, bf16 or int8")
       ->capture_default_str();

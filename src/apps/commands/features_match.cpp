@@ -9,7 +9,9 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "matching/descriptor_matching.h"
 
@@ -114,8 +116,8 @@ void match(const MatchArguments& arguments) {
       match_mutual(a.descriptors, b.descriptors, extractor->traits().max_distance, 1.0F);
   const auto inlier = find_inliers(a, b, matches, arguments.threshold);
   const auto inliers = std::count(inlier.begin(), inlier.end(), 1);
-  fmt::print("{}: {} and {} keypoints, {} mutual nearest neighbours, {} agree with a homography\n",
-             extractor->name(), a.size(), b.size(), matches.size(), inliers);
+  print("{}: {} and {} keypoints, {} mutual nearest neighbours, {} agree with a homography\n",
+        extractor->name(), a.size(), b.size(), matches.size(), inliers);
   if (!arguments.picture.empty()) {
     write_picture(arguments.picture, draw(first, second, a, b, matches, inlier));
   }
@@ -132,7 +134,7 @@ void add_match_command(CLI::App& app) {
   command
       ->add_option("--threshold", arguments->threshold,
                    "pixels from the homography that an inlier may be")
-      ->check(CLI::Range(0.1, 100.0))
+      ->check(number(0.1, 100.0))
       ->capture_default_str();
   add_feature_options(*command, arguments->extractor);
   add_low_light_option(*command, arguments->low_light);

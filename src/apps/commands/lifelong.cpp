@@ -6,9 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/map_io.h"
+#include "apps/process.h"
 #include "apps/progress.h"
+#include "apps/stoppable_sequence.h"
 #include "apps/system_setup.h"
+#include "apps/usage.h"
 #include "evaluation/openloris_result.h"
 #include "features/extractor_factory.h"
 #include "io/formats/trajectory_file.h"
@@ -50,7 +54,7 @@ struct Visit {
 std::vector<std::unique_ptr<RgbdSequence>> open_all(const LifelongSettings& settings) {
   std::vector<std::unique_ptr<RgbdSequence>> all;
   for (const std::string& folder : settings.sequences) {
-    all.push_back(open_sequence(folder, settings.reader));
+    all.push_back(stoppable(open_sequence(folder, settings.reader)));
     const Camera& first = all.front()->camera();
     const Camera& camera = all.back()->camera();
     if (camera.width != first.width || camera.height != first.height || camera.fx != first.fx ||
@@ -68,6 +72,7 @@ void feed(const LifelongSettings& settings, RgbdSequence& sequence, bool dark, S
   system.begin_sequence();
   for (std::size_t i = 0; i < sequence.size(); i += settings.stride) {
     std::optional<RgbdImage> image = sequence.read(i);
+    if (stop_requested()) return;
     if (!image) continue;
     if (dark) image->color = low_light.apply(image->color, image->index);
     if (visit.frames++ == 0) visit.first_stamp = image->stamp;
@@ -113,8 +118,8 @@ void write_lifelong(const LifelongSettings& settings, const System& system,
             : nlohmann::ordered_json(visit.online.front().stamp - visit.first_stamp);
     table.push_back(row);
     write_trajectory(fs::path(settings.out) / fmt::format("online_{}.txt", v + 1), visit.online);
-    fmt::print("{:>3}  {:<24} {:>6} of {:>6} frames localized, {:>5} keyframes, {:>7} points\n",
-               v + 1, visit.name, visit.online.size(), visit.frames, size.keyframes, size.points);
+    print("{:>3}  {:<24} {:>6} of {:>6} frames localized, {:>5} keyframes, {:>7} points\n", v + 1,
+          visit.name, visit.online.size(), visit.frames, size.keyframes, size.points);
   }
   write_openloris_result(fs::path(settings.out) / fmt::format("dxslam_{}.txt", settings.scene),
                          result);
@@ -141,14 +146,15 @@ int run(const LifelongSettings& settings) {
     thumbnails = hand_over(load_map(settings.map_in), system, settings.map_in, header,
                            options.mode == "slam");
   }
+  std::optional<Unsaved> unsaved(std::in_place);
   std::vector<Visit> visits;
-  for (std::size_t v = 0; v < sequences.size(); ++v) {
+  for (std::size_t v = 0; v < sequences.size() && !stop_requested(); ++v) {
     visits.push_back({sequences[v]->name(), 0, {}, 0.0});
     const bool dark = std::count(settings.low_light.begin(), settings.low_light.end(),
                                  static_cast<int>(v) + 1) > 0;
     feed(settings, *sequences[v], dark, system, visits.back());
   }
-  system.finish();
+  system.finish([] { return !stop_requested(); });
   progress.finish();
   if (!settings.map_out.empty()) {
     save_system_map(settings.map_out, header, system.map(), system.backend().closed_loops(),
@@ -156,7 +162,8 @@ int run(const LifelongSettings& settings) {
   }
   collect_online_poses(system, visits);
   write_lifelong(settings, system, visits);
-  fmt::print("results in {}\n", settings.out);
+  unsaved.reset();
+  print("results in {}\n", settings.out);
   return kSuccess;
 }
 
@@ -183,10 +190,11 @@ void add_lifelong_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--frame", settings->frame, "Name of the camera in the result")
       ->capture_default_str();
-  command->add_option("--stride", settings->stride, "Use every n-th frame")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--low-light-in", settings->low_light,
-                      "Darken the sequences of these numbers (from 1; low-light model)");
+  command->add_option("--stride", settings->stride, "Use every n-th frame")->check(whole_number(1));
+  command
+      ->add_option("--low-light-in", settings->low_light,
+                   "Darken the sequences of these numbers (from 1; low-light model)")
+      ->check(whole_number(1));
   command->add_flag("--deterministic", settings->deterministic,
                     "One thread, exact arithmetic: the same result every time");
   command->callback([settings] {

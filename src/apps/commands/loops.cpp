@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/loop_experiment.h"
 #include "apps/loops_output.h"
 #include "apps/progress.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "core/options.h"
 #include "evaluation/statistics.h"
@@ -25,16 +27,16 @@ struct LoopsArguments {
 };
 
 void print_table(const LoopExperiment& experiment, const std::vector<NamedCurve>& curves) {
-  fmt::print("{} queries, {} of them with a true loop; {} places\n", experiment.queries.size(),
-             curves.front().curve.queries_with_loop, experiment.places.size());
-  fmt::print("{:<28} {:>18} {:>18} {:>16}\n", "method", "recall at 100 %", "average precision",
-             "median query ms");
+  print("{} queries, {} of them with a true loop; {} places\n", experiment.queries.size(),
+        curves.front().curve.queries_with_loop, experiment.places.size());
+  print("{:<28} {:>18} {:>18} {:>16}\n", "method", "recall at 100 %", "average precision",
+        "median query ms");
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<double> times;
     for (const LoopQuery& query : experiment.runs[i].queries) times.push_back(query.ms);
-    fmt::print("{:<28} {:>18.4f} {:>18.4f} {:>16.2f}\n", curves[i].name,
-               curves[i].curve.recall_at_100_precision, curves[i].curve.average_precision,
-               summarise(times).median);
+    print("{:<28} {:>18.4f} {:>18.4f} {:>16.2f}\n", curves[i].name,
+          curves[i].curve.recall_at_100_precision, curves[i].curve.average_precision,
+          summarise(times).median);
   }
 }
 
@@ -73,10 +75,10 @@ void find_loops(const LoopsArguments& arguments) {
   print_table(experiment, curves);
   if (!sequence->skipped().empty()) {
     const SkippedFrame& first = sequence->skipped().front();
-    fmt::print(stderr, "dxslam: {} frames were skipped; the first, {}: {}\n",
-               sequence->skipped().size(), first.index, first.reason);
+    warn("{} frames were skipped; the first, {}: {}", sequence->skipped().size(), first.index,
+         first.reason);
   }
-  if (!settings.out.empty()) fmt::print("results in {}\n", settings.out);
+  if (!settings.out.empty()) print("results in {}\n", settings.out);
 }
 
 void add_input_options(CLI::App& command, LoopSettings& settings) {
@@ -92,32 +94,41 @@ void add_input_options(CLI::App& command, LoopSettings& settings) {
       .add_option("--eye", settings.eye,
                   "all, left or right: images of which camera, where two take turns")
       ->capture_default_str();
-  command.add_option("--stride", settings.stride, "Use every n-th frame")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--max-frames", settings.max_frames, "Stop after so many frames");
+  command.add_option("--stride", settings.stride, "Use every n-th frame")->check(whole_number(1));
+  command.add_option("--max-frames", settings.max_frames, "Stop after so many frames")
+      ->check(whole_number(0));
   PoseLoopOptions& poses = settings.poses;
   command.add_option("--window", poses.window, "Seconds that a view must be old to be found")
+      ->check(range_of<PoseLoopOptions>("window"))
       ->capture_default_str();
   command.add_option("--radius", poses.radius, "True loops from poses: metres apart at most")
+      ->check(range_of<PoseLoopOptions>("radius"))
       ->capture_default_str();
   command.add_option("--angle", poses.angle, "True loops from poses: degrees apart at most")
+      ->check(range_of<PoseLoopOptions>("angle"))
       ->capture_default_str();
   command
       .add_option("--unclear", poses.unclear,
                   "Pairs within so many times radius and angle are neither right nor wrong")
+      ->check(range_of<PoseLoopOptions>("unclear"))
       ->capture_default_str();
   command
       .add_option("--overlap", poses.overlap,
                   "Pairs that share this much of what they see are not wrong (with depth)")
+      ->check(range_of<PoseLoopOptions>("overlap"))
       ->capture_default_str();
-  command.add_option("--second-pass-from", settings.second_pass_from,
-                     "Frames before it are places only, frames from it on queries only");
-  command.add_option("--low-light-from", settings.low_light_from,
-                     "Darken the images from this frame on (low-light model)");
+  command
+      .add_option("--second-pass-from", settings.second_pass_from,
+                  "Frames before it are places only, frames from it on queries only")
+      ->check(whole_number(0));
+  command
+      .add_option("--low-light-from", settings.low_light_from,
+                  "Darken the images from this frame on (low-light model)")
+      ->check(whole_number(0));
   command
       .add_option("--low-light-gain", settings.low_light_gain,
                   fmt::format("How much (default {})", LowLight::kDefaultGain))
-      ->check(CLI::Range(0.001, 1.0));
+      ->check(low_light_gain());
 }
 
 void add_method_options(CLI::App& command, LoopsArguments& arguments) {
@@ -133,6 +144,7 @@ void add_method_options(CLI::App& command, LoopsArguments& arguments) {
   command
       .add_option("--candidates", settings.detector.candidates,
                   "Similar places by words whose global descriptors are compared")
+      ->check(range_of<LoopOptions>("candidates"))
       ->capture_default_str();
   command.add_option("--features", settings.features,
                      "Extractor of all methods but orb-bow: name or model manifest");
@@ -143,8 +155,10 @@ void add_method_options(CLI::App& command, LoopsArguments& arguments) {
   command
       .add_option("--max-keypoints", settings.extractor.max_keypoints,
                   "Keypoints an image of either extractor; 0 = as it says")
+      ->check(range_of<ExtractorOptions>("max_keypoints"))
       ->capture_default_str();
   command.add_option("--threads", settings.extractor.threads, "Threads of the network")
+      ->check(range_of<ExtractorOptions>("threads"))
       ->capture_default_str();
   command.add_flag("--deterministic", settings.extractor.deterministic,
                    "Exact arithmetic: the same result every time");

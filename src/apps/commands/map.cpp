@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/map_weld.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
@@ -92,22 +94,22 @@ void print_info(const StoredMap& stored, const MapStatistics& s, double bytes) {
   const Camera& c = header.camera;
   const double keyframes =
       static_cast<double>(std::max<std::size_t>(1, stored.map.keyframe_count()));
-  fmt::print("features      {}, {} {} a keypoint{}\n", header.extractor, header.traits.dimension,
-             header.traits.binary ? "bytes" : "floats",
-             header.model_hash.empty() ? "" : ", weights " + header.model_hash.substr(0, 12));
-  fmt::print("camera        {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}\n", c.width, c.height,
-             c.fx, c.fy, c.cx, c.cy);
-  fmt::print("size          {:.1f} MiB, {:.1f} KiB per keyframe\n", bytes / kMebibyte,
-             bytes / 1024.0 / keyframes);
-  fmt::print("keyframes     {}, {} of them with a global descriptor\n", stored.map.keyframe_count(),
-             s.globals);
-  fmt::print("keypoints     {}\n", s.keypoints);
-  fmt::print("points        {}, seen {} times\n", stored.map.point_count(), s.observations);
-  fmt::print("loops         {}\n", stored.loops.size());
+  print("features      {}, {} {} a keypoint{}\n", header.extractor, header.traits.dimension,
+        header.traits.binary ? "bytes" : "floats",
+        header.model_hash.empty() ? "" : ", weights " + header.model_hash.substr(0, 12));
+  print("camera        {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}\n", c.width, c.height, c.fx,
+        c.fy, c.cx, c.cy);
+  print("size          {:.1f} MiB, {:.1f} KiB per keyframe\n", bytes / kMebibyte,
+        bytes / 1024.0 / keyframes);
+  print("keyframes     {}, {} of them with a global descriptor\n", stored.map.keyframe_count(),
+        s.globals);
+  print("keypoints     {}\n", s.keypoints);
+  print("points        {}, seen {} times\n", stored.map.point_count(), s.observations);
+  print("loops         {}\n", stored.loops.size());
   for (std::size_t i = 0; i < s.components.size(); ++i) {
     const ComponentSize& part = s.components[i];
-    fmt::print("component {:<3} {} keyframes, {} points, {:.1f} m, stamps {:.3f} to {:.3f}\n", i,
-               part.keyframes, part.points, part.extent, part.first_stamp, part.last_stamp);
+    print("component {:<3} {} keyframes, {} points, {:.1f} m, stamps {:.3f} to {:.3f}\n", i,
+          part.keyframes, part.points, part.extent, part.first_stamp, part.last_stamp);
   }
 }
 
@@ -117,8 +119,8 @@ void info_command(const MapArguments& arguments) {
   const MapStatistics statistics = map_statistics(stored);
   print_info(stored, statistics, static_cast<double>(std::filesystem::file_size(path)));
   for (const MapFileSection& s : list_map_sections(path)) {
-    fmt::print("section {}  version {}, {:.2f} MiB\n", s.id, s.version,
-               static_cast<double>(s.size) / kMebibyte);
+    print("section {}  version {}, {:.2f} MiB\n", s.id, s.version,
+          static_cast<double>(s.size) / kMebibyte);
   }
   if (arguments.json.empty()) return;
   write_file_atomically(arguments.json, to_json_text(describe_map(path, stored, statistics)));
@@ -127,15 +129,14 @@ void info_command(const MapArguments& arguments) {
 void check_command(const MapArguments& arguments) {
   const StoredMap stored = load_map(arguments.files.front());
   const MapStatistics s = map_statistics(stored);
-  fmt::print("checksums     right\n");
-  fmt::print("relations     sound: {} keyframes, {} points, {} observations, {} loops\n",
-             stored.map.keyframe_count(), stored.map.point_count(), s.observations,
-             stored.loops.size());
-  fmt::print("reprojection  {:.2f} px median, {:.2f} px 95 %\n", s.median_error, s.p95_error);
-  fmt::print("behind camera {} observations\n", s.behind);
-  fmt::print("connected     {} groups of covisible keyframes in {} components\n",
-             s.covisible_groups, s.components.size());
-  fmt::print("blind         {} keyframes that see no point\n", s.blind_keyframes);
+  print("checksums     right\n");
+  print("relations     sound: {} keyframes, {} points, {} observations, {} loops\n",
+        stored.map.keyframe_count(), stored.map.point_count(), s.observations, stored.loops.size());
+  print("reprojection  {:.2f} px median, {:.2f} px 95 %\n", s.median_error, s.p95_error);
+  print("behind camera {} observations\n", s.behind);
+  print("connected     {} groups of covisible keyframes in {} components\n", s.covisible_groups,
+        s.components.size());
+  print("blind         {} keyframes that see no point\n", s.blind_keyframes);
 }
 
 void write_thumbnails(const std::string& folder, const StoredMap& stored) {
@@ -148,7 +149,7 @@ void write_thumbnails(const std::string& folder, const StoredMap& stored) {
                           stored.thumbnails[id]);
     ++written;
   }
-  fmt::print("{} thumbnails\n", written);
+  print("{} thumbnails\n", written);
 }
 
 void export_command(const MapArguments& arguments) {
@@ -186,8 +187,8 @@ void merge_command(const MapArguments& arguments) {
   for (const Keyframe& k : snapshot.parts.keyframes) {
     components = std::max(components, k.component + 1);
   }
-  fmt::print("{} keyframes and {} points in {} components; {} common places\n",
-             snapshot.parts.keyframes.size(), snapshot.parts.points.size(), components, loops);
+  print("{} keyframes and {} points in {} components; {} common places\n",
+        snapshot.parts.keyframes.size(), snapshot.parts.points.size(), components, loops);
 }
 
 CLI::App* add_action(CLI::App& map, const char* name, const char* about,
@@ -226,7 +227,7 @@ void add_map_command(CLI::App& app) {
   exporting->add_option("--thumbnails", arguments->thumbnails, "pictures of the keyframes")
       ->option_text("DIR");
   exporting->add_option("--component", arguments->component, "only this one into the PLY file")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0))
       ->option_text("N");
 
   CLI::App* merge =

@@ -8,9 +8,11 @@
 #include <optional>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/features_arguments.h"
 #include "apps/map_io.h"
 #include "apps/progress.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "evaluation/statistics.h"
 #include "io/formats/options_yaml.h"
@@ -114,10 +116,10 @@ void relocalize(const RelocalizeArguments& arguments) {
   const Relocalizer relocalizer(sequence->camera(), extractor->traits(), options.relocalization);
   const Results results = ask_all(arguments, *sequence, *extractor, map, relocalizer);
   if (!arguments.out.empty()) write_results(arguments.out, results);
-  fmt::print("{} of {} frames found in a map of {} keyframes; {:.1f} ms per frame (median)\n",
-             results.poses.size(), results.times.size(), map.stored.map.keyframe_count(),
-             summarise(results.times).median);
-  if (!arguments.out.empty()) fmt::print("results in {}\n", arguments.out);
+  print("{} of {} frames found in a map of {} keyframes; {:.1f} ms per frame (median)\n",
+        results.poses.size(), results.times.size(), map.stored.map.keyframe_count(),
+        summarise(results.times).median);
+  if (!arguments.out.empty()) print("results in {}\n", arguments.out);
 }
 
 }  // namespace
@@ -137,7 +139,7 @@ void add_relocalize_command(CLI::App& app) {
                       "camera preset or YAML file (default: by format)");
   command->add_option("--config", arguments->config, "YAML file; see `dxslam config dump`");
   command->add_option("--stride", arguments->stride, "use every n-th frame")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1));
   add_feature_options(*command, arguments->features);
   add_low_light_option(*command, arguments->low_light);
   command->callback([arguments] { relocalize(*arguments); });

@@ -4,16 +4,18 @@
 
 #include <filesystem>
 #include <future>
-#include <thread>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/map_io.h"
 #include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/run_output.h"
 #include "apps/run_settings.h"
+#include "apps/stoppable_sequence.h"
 #include "apps/system_setup.h"
 #include "apps/thumbnails.h"
+#include "apps/usage.h"
 #include "features/extractor_factory.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
@@ -44,16 +46,20 @@ const char* state_name(TrackingState state) {
   }
 }
 
-// Waits until the recording's own clock has come to `stamp`.
+// Waits until the recording's own clock has come to `stamp`, or for the stop.
 class RealTimePace {
  public:
   void wait_for(double stamp) {
     if (first_stamp_ < 0.0) first_stamp_ = stamp;
-    std::this_thread::sleep_until(start_ + std::chrono::duration<double>(stamp - first_stamp_));
+    sleep_until(start_ + std::chrono::duration_cast<Clock::duration>(std::min(
+                             std::chrono::duration<double>(stamp - first_stamp_), kLongest)));
   }
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::duration<double> kLongest{1e9};  // what a clock can hold
+
+  Clock::time_point start_ = Clock::now();
   double first_stamp_ = -1.0;
 };
 
@@ -64,11 +70,8 @@ void feed(const RunSettings& settings, RgbdSequence& sequence, System& system,
   RealTimePace pace;
   for (std::size_t i = 0; i < sequence.size(); i += settings.stride) {
     if (settings.max_frames > 0 && record.frames_offered >= settings.max_frames) break;
-    if (stop_requested()) {
-      record.interrupted = true;
-      break;
-    }
     std::optional<RgbdImage> image = sequence.read(i);
+    if (stop_requested()) break;
     ++record.frames_offered;
     if (!image) continue;
     if (low_light) image->color = low_light->apply(image->color, image->index);
@@ -78,9 +81,11 @@ void feed(const RunSettings& settings, RgbdSequence& sequence, System& system,
       continue;
     }
     pace.wait_for(image->stamp);
+    if (stop_requested()) break;
     if (!system.try_process(*image)) ++record.frames_dropped;
   }
-  system.finish();
+  system.finish([] { return !stop_requested(); });
+  record.interrupted = stop_requested();
 }
 
 std::size_t planned_frames(const RunSettings& settings, const RgbdSequence& sequence) {
@@ -92,7 +97,7 @@ void print_outcome(const RunSettings& settings, const RunRecord& record,
                    const RgbdSequence& sequence, const System& system) {
   const auto stages = system.times().summaries();
   const auto frame = stages.find("frame");
-  fmt::print(
+  print(
       "{} of {} frames tracked, {} keyframes, {} points; {:.1f} ms per frame ({}), {:.1f} s in "
       "all\n",
       tracked_frames(system), record.frames_offered, system.map().keyframe_count(),
@@ -100,13 +105,13 @@ void print_outcome(const RunSettings& settings, const RunRecord& record,
       system.extractor().name(), record.wall_s);
   if (!sequence.skipped().empty()) {
     const SkippedFrame& first = sequence.skipped().front();
-    fmt::print(stderr, "dxslam: {} frames were skipped; the first, {}: {}\n",
-               sequence.skipped().size(), first.index, first.reason);
+    warn("{} frames were skipped; the first, {}: {}", sequence.skipped().size(), first.index,
+         first.reason);
   }
   if (record.frames_dropped > 0) {
-    fmt::print(stderr, "dxslam: {} frames came too fast and were dropped\n", record.frames_dropped);
+    warn("{} frames came too fast and were dropped", record.frames_dropped);
   }
-  if (!settings.out.empty()) fmt::print("results in {}\n", settings.out);
+  if (!settings.out.empty()) print("results in {}\n", settings.out);
 }
 
 void check_map_settings(const RunSettings& settings, const SystemOptions& options) {
@@ -123,10 +128,10 @@ void check_map_settings(const RunSettings& settings, const SystemOptions& option
 
 int run(const RunSettings& settings) {
   const Stopwatch startup;
-  catch_signals();
   const SystemOptions options = options_of(settings);
   check_map_settings(settings, options);
-  const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, settings.reader);
+  const std::unique_ptr<RgbdSequence> sequence =
+      stoppable(open_sequence(settings.sequence, settings.reader));
   std::future<StoredMap> loading;  // while the network is made ready
   if (!settings.map_in.empty()) {
     loading = std::async(std::launch::async, load_map, settings.map_in);
@@ -164,6 +169,7 @@ int run(const RunSettings& settings) {
   }
   record.startup_ms = startup.ms();
   const Stopwatch wall;
+  std::optional<Unsaved> unsaved(std::in_place);
   feed(settings, *sequence, system, *thumbnails, record);
   record.wall_s = wall.ms() / 1000.0;
   progress.finish();
@@ -175,6 +181,7 @@ int run(const RunSettings& settings) {
   if (!settings.out.empty()) {
     write_results(settings.out, settings, record, options, *sequence, system);
   }
+  unsaved.reset();
   print_outcome(settings, record, *sequence, system);
   if (record.interrupted) return kInterrupted;
   const double share = static_cast<double>(tracked_frames(system)) /
@@ -204,20 +211,21 @@ void add_run_command(CLI::App& app) {
   command
       ->add_option("--autosave", settings->autosave,
                    "Save it after every so many keyframes as well, not only at the end")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1));
   command->add_flag("--thumbnails", settings->thumbnails,
                     "Put small pictures of the keyframes into it, 3 to 6 KiB each");
   command->add_option("--vocabulary", settings->vocabulary,
                       "FBoW or DBoW2 file; none: loops by global descriptor alone");
   command->add_flag("--no-loop-closing", settings->no_loop_closing, "Do not look for loops");
-  command->add_option("--stride", settings->stride, "Use every n-th frame")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--max-frames", settings->max_frames, "Stop after so many frames");
+  command->add_option("--stride", settings->stride, "Use every n-th frame")->check(whole_number(1));
+  command->add_option("--max-frames", settings->max_frames, "Stop after so many frames")
+      ->check(whole_number(0));
   command
       ->add_option_function<double>(
           "--low-light", [settings](double gain) { settings->low_light = gain; },
           "Darken the images first (low-light model)")
       ->expected(0, 1)
+      ->check(low_light_gain())
       ->default_str(fmt::format("{}", LowLight::kDefaultGain))
       ->type_name("[=GAIN]");
   command->add_flag("--realtime", settings->realtime,

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/progress.h"
+#include "apps/usage.h"
 #include "synthetic/tum_writer.h"
 
 namespace dxslam::apps {
@@ -47,8 +48,7 @@ void run_synth(SynthArguments& arguments) {
   };
   write_tum_sequence(sequence, arguments.out, writer);
   progress.finish();
-  std::printf("%zu frames, %.1f m, in %s\n", sequence.size(), sequence.path_length(),
-              arguments.out.c_str());
+  print("{} frames, {:.1f} m, in {}\n", sequence.size(), sequence.path_length(), arguments.out);
 }
 
 }  // namespace
@@ -63,33 +63,50 @@ void add_synth_command(CLI::App& app) {
   command->add_option("--scene", options.scene, "room, office or corridor (a loop of 208 m)")
       ->capture_default_str();
   command->add_option("--frames", options.frames, "most frames; 0: the whole path")
+      ->check(range_of<SyntheticOptions>("frames"))
       ->capture_default_str();
-  command->add_option("--fps", options.fps, "frames a second")->capture_default_str();
-  command->add_option("--seed", options.seed, "place and walk")->capture_default_str();
-  command->add_option("--width", options.width, "pixels")->capture_default_str();
-  command->add_option("--height", options.height, "pixels")->capture_default_str();
+  command->add_option("--fps", options.fps, "frames a second")
+      ->check(range_of<SyntheticOptions>("fps"))
+      ->capture_default_str();
+  command->add_option("--seed", options.seed, "place and walk")
+      ->check(range_of<SyntheticOptions>("seed"))
+      ->capture_default_str();
+  command->add_option("--width", options.width, "pixels")
+      ->check(range_of<SyntheticOptions>("width"))
+      ->capture_default_str();
+  command->add_option("--height", options.height, "pixels")
+      ->check(range_of<SyntheticOptions>("height"))
+      ->capture_default_str();
   command->add_option("--speed", options.path.speed, "walking speed, m/s; 0: the scene's own")
+      ->check(range_of<PathOptions>("speed"))
       ->capture_default_str();
   command->add_option("--camera-height", options.path.height, "metres above the floor")
+      ->check(range_of<PathOptions>("height"))
       ->capture_default_str();
   command
       ->add_option("--offset", options.path.sideways,
                    "metres that the path is shifted to the right, -0.4 to 0.4")
+      ->check(range_of<PathOptions>("sideways"))
       ->capture_default_str();
   command
       ->add_option("--walk", options.path.walk,
                    "another walk through the same place: other glances, another hand")
+      ->check(range_of<PathOptions>("walk"))
       ->capture_default_str();
   command->add_flag("--reverse", options.path.reverse,
                     "walk the path the other way, looking the other way");
   command->add_option("--standstill", options.path.standstill, "seconds at rest before the walk")
+      ->check(range_of<PathOptions>("standstill"))
       ->capture_default_str();
   command->add_option("--factor", arguments->factors, factor_help())->allow_extra_args(false);
   command->add_option("--factor-seed", options.factors.seed, "seed of the factors")
+      ->check(range_of<FactorOptions>("seed"))
       ->capture_default_str();
   command->add_flag("--png", arguments->png, "colour images without loss instead of JPEG");
   command->add_flag("--force", arguments->force, "replace a recording in OUT");
-  command->add_option("--threads", options.threads, "frames drawn at once")->capture_default_str();
+  command->add_option("--threads", options.threads, "frames drawn at once")
+      ->check(range_of<SyntheticOptions>("threads"))
+      ->capture_default_str();
   command->callback([arguments] { run_synth(*arguments); });
 }
 

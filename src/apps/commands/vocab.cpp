@@ -6,10 +6,12 @@
 #include <memory>
 
 #include "apps/commands.h"
+#include "apps/console.h"
 #include "apps/features_arguments.h"
 #include "apps/image_stream.h"
 #include "apps/process.h"
 #include "apps/progress.h"
+#include "apps/usage.h"
 #include "core/error.h"
 #include "core/options.h"
 #include "features/extractor_factory.h"
@@ -59,7 +61,7 @@ bool add_images(const TrainArguments& arguments, ImageStream& stream, FeatureExt
   std::size_t position = 0;
   if (!arguments.checkpoint.empty() && fs::exists(arguments.checkpoint)) {
     position = trainer.load(arguments.checkpoint, source);
-    fmt::print("going on at image {} of {}\n", position, stream.size());
+    print("going on at image {} of {}\n", position, stream.size());
   }
   Progress progress("images", stream.size());
   stream.visit(position, [&](std::size_t index, const ImageStream::Item& item) {
@@ -82,7 +84,6 @@ bool add_images(const TrainArguments& arguments, ImageStream& stream, FeatureExt
 }
 
 int train(const TrainArguments& arguments) {
-  catch_signals();
   const std::unique_ptr<FeatureExtractor> extractor = make_extractor(arguments.extractor);
   VocabularyTrainer trainer(extractor->traits(), arguments.options);
   ImageStream stream(arguments.sources, arguments.stride);
@@ -98,28 +99,27 @@ int train(const TrainArguments& arguments) {
   vocabulary.save(arguments.out);
   if (!arguments.checkpoint.empty()) fs::remove(arguments.checkpoint);
   const VocabularyInfo info = vocabulary.info();
-  fmt::print("{}: {} words of {} {} from {} images, {} levels\n", arguments.out, info.words,
-             info.dimension, info.binary ? "bytes" : "floats", trainer.images(), info.depth);
+  print("{}: {} words of {} {} from {} images, {} levels\n", arguments.out, info.words,
+        info.dimension, info.binary ? "bytes" : "floats", trainer.images(), info.depth);
   if (stream.skipped() > 0) {
-    fmt::print(stderr, "dxslam: {} images were skipped; the first: {}\n", stream.skipped(),
-               stream.first_skipped());
+    warn("{} images were skipped; the first: {}", stream.skipped(), stream.first_skipped());
   }
   return kSuccess;
 }
 
 void print_info(const std::string& path) {
   const VocabularyInfo info = Vocabulary::load(path).info();
-  fmt::print("name         {}\n", info.name.empty() ? "none" : info.name);
-  fmt::print("descriptors  {} {}\n", info.dimension, info.binary ? "bytes" : "floats");
-  fmt::print("words        {}{}\n", info.words, info.distinct_words ? "" : ", some ids shared");
-  fmt::print("inner nodes  {}\n", info.inner_nodes);
-  fmt::print("branching    {}\n", info.branching);
-  fmt::print("depth        {}\n", info.depth);
-  fmt::print("weights      {:.4g} to {:.4g}\n", info.min_weight, info.max_weight);
-  fmt::print("size         {:.2f} MB\n", static_cast<double>(info.bytes) / 1e6);
-  fmt::print("file         {}\n", !info.mapped        ? "DBoW2 text"
-                                  : info.has_checksum ? "FBoW with checksum"
-                                                      : "FBoW");
+  print("name         {}\n", info.name.empty() ? "none" : info.name);
+  print("descriptors  {} {}\n", info.dimension, info.binary ? "bytes" : "floats");
+  print("words        {}{}\n", info.words, info.distinct_words ? "" : ", some ids shared");
+  print("inner nodes  {}\n", info.inner_nodes);
+  print("branching    {}\n", info.branching);
+  print("depth        {}\n", info.depth);
+  print("weights      {:.4g} to {:.4g}\n", info.min_weight, info.max_weight);
+  print("size         {:.2f} MB\n", static_cast<double>(info.bytes) / 1e6);
+  print("file         {}\n", !info.mapped        ? "DBoW2 text"
+                             : info.has_checksum ? "FBoW with checksum"
+                                                 : "FBoW");
 }
 
 struct ConvertArguments {
@@ -137,8 +137,8 @@ void convert(const ConvertArguments& arguments) {
   } else {
     vocabulary.save(arguments.out);
   }
-  fmt::print("{}: {} words as {}\n", arguments.out, vocabulary.word_count(),
-             format == "dbow2" ? "DBoW2 text" : "FBoW");
+  print("{}: {} words as {}\n", arguments.out, vocabulary.word_count(),
+        format == "dbow2" ? "DBoW2 text" : "FBoW");
 }
 
 void add_train_command(CLI::App& vocab) {
@@ -154,30 +154,42 @@ void add_train_command(CLI::App& vocab) {
       ->check(CLI::IsMember({"incremental", "kmeans"}))
       ->capture_default_str();
   command->add_option("--branching", options.branching, "most children of a node")
+      ->check(range_of<VocabularyTrainingOptions>("branching"))
       ->capture_default_str();
   command->add_option("--depth", options.depth, "most levels, 0 = as needed")
+      ->check(range_of<VocabularyTrainingOptions>("depth"))
       ->capture_default_str();
-  command->add_option("--words", options.words, "most words, 0 = no limit")->capture_default_str();
+  command->add_option("--words", options.words, "most words, 0 = no limit")
+      ->check(range_of<VocabularyTrainingOptions>("words"))
+      ->capture_default_str();
   command
       ->add_option("--matched-per-image", options.matched_per_image,
                    "best matched descriptors of an image that join their words")
+      ->check(range_of<VocabularyTrainingOptions>("matched_per_image"))
       ->capture_default_str();
   command->add_option("--match-ratio", options.match_ratio, "ratio test of matches, 1 = none")
+      ->check(range_of<VocabularyTrainingOptions>("match_ratio"))
       ->capture_default_str();
   command
       ->add_option("--min-observations", options.min_observations,
                    "images that must have seen a word")
+      ->check(range_of<VocabularyTrainingOptions>("min_observations"))
       ->capture_default_str();
   command->add_option("--max-open-words", options.max_open_words, "words kept while training")
+      ->check(range_of<VocabularyTrainingOptions>("max_open_words"))
       ->capture_default_str();
   command->add_option("--sample-mb", options.sample_mb, "memory for sampled images")
+      ->check(range_of<VocabularyTrainingOptions>("sample_mb"))
       ->capture_default_str();
-  command->add_option("--seed", options.seed, "seed of the clustering")->capture_default_str();
+  command->add_option("--seed", options.seed, "seed of the clustering")
+      ->check(range_of<VocabularyTrainingOptions>("seed"))
+      ->capture_default_str();
   command->add_option("--stride", arguments->stride, "use every n-th image")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1));
   command
       ->add_option("--photo-views", arguments->photo_views,
                    "changed views that follow each single photo as its neighbours")
+      ->check(whole_number(0, 1000))
       ->capture_default_str();
   command->add_option("--checkpoint", arguments->checkpoint,
                       "file for the state of an interrupted training, which a second call with the "

@@ -1,0 +1,272 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright 2026 The dxslam authors
+"""What a console that fails, a signal and an odd command line do to the program: nothing is lost.
+
+usage: process_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
+"""
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
+TIMEOUT = 120
+SUCCESS, BAD_USAGE, BAD_INPUT, TRACKING_FAILED, INTERRUPTED = 0, 2, 3, 4, 5
+FRAMES = 40
+SECONDS_TO_STOP = 2.0
+SLACK = float(os.environ.get("DXSLAM_TEST_SLACK", "1"))  # for machines busy with other tests
+
+
+def program(*arguments, **options):
+    return subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, timeout=TIMEOUT,
+                          **{"capture_output": "stdout" not in options, "text": True,
+                             "errors": "replace", **options})
+
+
+def shell(command, folder):
+    """A command line of bash, in which $D is the program."""
+    return subprocess.run(["bash", "-c", command], cwd=folder, env={**os.environ, "D": PROGRAM},
+                          stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=TIMEOUT)
+
+
+def rows(file):
+    return [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
+
+
+class Made(unittest.TestCase):
+    """A recording for all tests of a class, and a folder for each test."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.root = Path(tempfile.mkdtemp(prefix="dxslam_process_"))
+        cls.recording = cls.root / "recording"
+        made = program("synth", cls.recording, "--frames", FRAMES, "--width", 320, "--height", 240)
+        assert made.returncode == 0, made.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.root, ignore_errors=True)
+
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(dir=self.root))
+
+    def expect(self, done, code):
+        self.assertEqual(done.returncode, code, (done.stdout, done.stderr))
+
+    def check_results(self, out, map_file=None):
+        """Whole results of the recording, and nothing else in them."""
+        for row in rows(out / "trajectory.txt"):
+            self.assertEqual(len(row), 8, row)
+        self.assertEqual(len(rows(out / "trajectory.txt")), FRAMES)
+        json.loads((out / "summary.json").read_text())
+        if map_file:
+            self.expect(program("map", "check", map_file), SUCCESS)
+
+
+class Console(Made):
+    RUN = '"$D" run ../recording --features orb --out out --map-out m.dxmap'
+
+    def check_run(self, redirection, code=SUCCESS):
+        done = shell(f"{self.RUN} {redirection}", self.folder)
+        self.expect(done, code)
+        self.check_results(self.folder / "out", self.folder / "m.dxmap")
+        return done
+
+    def test_stdout_on_a_full_disk(self):
+        done = self.check_run("> /dev/full", BAD_INPUT)
+        self.assertRegex(done.stderr, r"dxslam: stdout cannot be written: No space left")
+        estimate = self.folder / "out" / "trajectory.txt"
+        for command in (f'"$D" eval ate ../recording/groundtruth.txt {estimate}', '"$D" config dump',
+                        '"$D" --help', '"$D" map info m.dxmap'):
+            done = shell(f"{command} > /dev/full", self.folder)
+            self.expect(done, BAD_INPUT)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_stderr_on_a_full_disk(self):
+        self.check_run("2> /dev/full")
+
+    def test_closed_descriptors(self):
+        self.check_run(">&- 2>&-")
+        self.check_run("2>&-")
+        self.check_run("<&- >&- 2>&-")
+
+    def test_reader_that_went_away(self):
+        # The reader of both ends at once.
+        done = shell(f'{{ {self.RUN} 2>&1; echo $? > code; }} | true', self.folder)
+        self.expect(done, SUCCESS)
+        self.assertEqual((self.folder / "code").read_text().strip(), "0")
+        self.check_results(self.folder / "out", self.folder / "m.dxmap")
+
+    def test_stderr_that_nobody_reads(self):
+        reading, writing = os.pipe()
+        os.set_blocking(writing, False)
+        try:
+            while True:
+                os.write(writing, b"x" * 4096)
+        except BlockingIOError:
+            pass
+        os.set_blocking(writing, True)
+        out = self.folder / "out"
+        done = program("run", self.recording, "--features", "orb", "--out", out,
+                       stdout=subprocess.DEVNULL, stderr=writing)
+        os.close(reading)
+        os.close(writing)
+        self.expect(done, SUCCESS)
+        self.check_results(out)
+
+    def test_names_cannot_command_the_terminal(self):
+        done = program("run", "a\x1b[2J\nb")
+        self.expect(done, BAD_INPUT)
+        self.assertIn("a\\x1b[2J\\nb", done.stderr)
+        self.assertNotIn("\x1b", done.stderr)
+        done = program("a\x1b[2Jb")
+        self.expect(done, BAD_USAGE)
+        self.assertNotIn("\x1b", done.stderr)
+        estimate = self.folder / "x\x1b[31m.txt"
+        shutil.copy(self.recording / "groundtruth.txt", estimate)
+        done = program("eval", "ate", self.recording / "groundtruth.txt", estimate)
+        self.expect(done, SUCCESS)
+        self.assertNotIn("\x1b", done.stdout + done.stderr)
+
+    def test_json_to_stdout_stands_beside_the_rest(self):
+        done = shell('"$D" config dump > all; cd ..; "$D" eval ate recording recording/groundtruth.txt'
+                     f' --json /dev/stdout > {self.folder}/all', self.folder)
+        self.expect(done, SUCCESS)
+        text = (self.folder / "all").read_text()
+        self.assertIn("ATE (m)", text)
+        self.assertIn('"metric": "ate"', text)
+
+
+class CommandLine(Made):
+    def refuse(self, *arguments, names=()):
+        done = program(*arguments)
+        self.expect(done, BAD_USAGE)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertLess(len(done.stderr), 600)
+        for name in names:
+            self.assertIn(name, done.stderr)
+
+    def test_numbers_out_of_range(self):
+        for option, values in {"--max-frames": ["-1", "1.5", "x", "99999999999999999999"],
+                               "--stride": ["-1", "0", "nan", "99999999999999999999"],
+                               "--autosave": ["0", "-3"],
+                               "--low-light=": ["-1", "0", "nan", "inf", "7"]}.items():
+            for value in values:
+                words = [option + value] if option.endswith("=") else [option, value]
+                self.refuse("run", self.recording, *words, names=[option.rstrip("="), value])
+        self.refuse("synth", self.folder / "s", "--frames", "-1", names=["--frames", "-1"])
+        self.refuse("synth", self.folder / "s", "--fps", "nan", names=["--fps", "nan"])
+        self.refuse("eval", "ate", "a", "b", "--max-difference", "nan", names=["nan"])
+        self.refuse("bench", "features", self.recording, "--frames", "0")
+        self.refuse("features", "a.png", "--max-keypoints", "-5", names=["-5"])
+        self.refuse("vocab", "train", self.recording, "--out", "v", "--words", "-1", names=["-1"])
+        self.refuse("lifelong", self.recording, "--out", "x", "--low-light-in", "0")
+        self.refuse("loops", self.recording, "--method", "bow", "--ground-truth", "poses",
+                    "--window", "-1", names=["--window"])
+        self.refuse("map", "export", "m", "--ply", "p", "--component", "-1", names=["-1"])
+
+    def test_the_mistyped_word_is_named(self):
+        self.refuse("rnu", self.recording, names=["'rnu'", "run"])
+        self.refuse("map", "chekc", "m", names=["'chekc'", "check"])
+        self.refuse("eval", "xyzzy", names=["'xyzzy'", "ate", "rpe"])
+        self.refuse("run", self.recording, "--strid", "2", names=["--strid"])
+
+    def test_an_empty_value_is_an_unset_variable(self):
+        for words in (["run", self.recording, "--out"], ["run", self.recording, "--map-out"],
+                      ["run", self.recording, "--map-in"], ["run", self.recording, "--config"],
+                      ["run", self.recording, "--calibration"], ["lifelong", "x", "--out"],
+                      ["relocalize", "m", self.recording, "--out"], ["eval", "ate", "a", "b", "--json"],
+                      ["eval", "ate", "a", "b", "--plot"], ["eval", "ate", "a"],
+                      ["eval", "openloris", "a", "b", "--plot"], ["map", "merge", "a", "b", "--out"],
+                      ["map", "info", "m", "--json"], ["map", "export", "m", "--ply"],
+                      ["features", "i", "--npz"], ["match", "a", "b", "--out"],
+                      ["vocab", "train", "x", "--out"], ["vocab", "convert", "a"], ["synth"],
+                      ["loops", "x", "--method", "bow", "--ground-truth", "poses", "--out"]):
+            self.refuse(*words, "", names=["empty"])
+        self.refuse("run", self.recording, "--out=")
+
+    def test_names_beyond_the_longest(self):
+        name = "n" * 300
+        for words in (["run", name], ["run", self.recording, "--out", self.folder / name],
+                      ["run", self.recording, "--config", name],
+                      ["run", self.recording, "--calibration", name],
+                      ["run", self.recording, "--map-in", name],
+                      ["run", self.recording, "--map-out", self.folder / name],
+                      ["run", self.recording, "--features", name + ".yaml"],
+                      ["run", self.recording, "--vocabulary", name],
+                      ["run", self.recording, "--association", name],
+                      ["lifelong", name, "--out", self.folder / "l"],
+                      ["lifelong", self.recording, "--out", self.folder / name],
+                      ["relocalize", name, self.recording], ["eval", "ate", name, name],
+                      ["eval", "openloris", name, name], ["map", "info", name],
+                      ["map", "check", name], ["map", "merge", name, name, "--out", name],
+                      ["features", name], ["match", name, name], ["bench", "features", name],
+                      ["vocab", "info", name], ["vocab", "train", name, "--out", "v"],
+                      ["vocab", "convert", name, "v"], ["synth", self.folder / name],
+                      ["loops", name, "--method", "bow", "--ground-truth", "poses"],
+                      ["loops", self.recording, "--method", "bow", "--ground-truth", name]):
+            done = program(*words)
+            self.assertEqual(done.returncode, BAD_INPUT, (words, done.stderr))
+            self.assertEqual(len(done.stderr.splitlines()), 1, (words, done.stderr))
+            self.assertRegex(done.stderr, r"(?i)name too long|no such|no camera|extractor", words)
+
+
+class Permissions(Made):
+    """As another user, since root may read everything."""
+
+    def setUp(self):
+        super().setUp()
+        if os.geteuid() != 0:
+            self.skipTest("only root can become another user")
+        os.chmod(self.root, 0o755)
+        os.chmod(self.folder, 0o777)
+
+    def refuse(self, *words):
+        done = program(*words, user=65534, group=65534, extra_groups=[], cwd="/")
+        self.expect(done, BAD_INPUT)
+        self.assertRegex(done.stderr, r"(?i)permission denied")
+
+    def test_what_may_not_be_read(self):
+        shutil.copytree(self.recording, self.folder / "r")
+        recording = self.folder / "r"
+        (recording / "rgb.txt").chmod(0)
+        self.refuse("run", recording)
+        (recording / "rgb.txt").chmod(0o644)
+        recording.chmod(0o600)
+        self.refuse("run", recording)
+        recording.chmod(0)
+        self.refuse("run", recording)
+        self.refuse("vocab", "train", recording, "--out", self.folder / "v")
+        secret = self.folder / "secret"
+        secret.write_text("x")
+        secret.chmod(0)
+        for words in (["map", "check", secret], ["map", "info", secret], ["vocab", "info", secret],
+                      ["eval", "ate", secret, secret], ["features", secret],
+                      ["run", self.recording, "--config", secret],
+                      ["run", self.recording, "--calibration", secret],
+                      ["run", self.recording, "--map-in", secret],
+                      ["eval", "openloris", secret, secret]):
+            self.refuse(*words)
+
+    def test_what_may_not_be_written(self):
+        closed = self.folder / "closed"
+        closed.mkdir(0o755)
+        self.refuse("run", self.recording, "--features", "orb", "--out", closed)
+        self.refuse("run", self.recording, "--features", "orb", "--map-out", closed / "m.dxmap")
+        self.refuse("synth", closed / "s")
+
+
+if __name__ == "__main__":
+    program_ = unittest.main(verbosity=2, exit=False)
+    outcome = program_.result
+    if outcome.testsRun and len(outcome.skipped) == outcome.testsRun:
+        sys.exit(77)  # ctest shows it as skipped
+    sys.exit(not outcome.wasSuccessful())
