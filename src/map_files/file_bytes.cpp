@@ -12,8 +12,8 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "map_files/huge_pages.h"
-#include "map_files/in_parallel.h"
 
 namespace dxslam {
 namespace {
@@ -80,7 +80,8 @@ FileBytes::FileBytes(const std::string& path, const std::string& expected, std::
     throw InputError(fmt::format("{}: {} bytes, more than there is memory", path, size_));
   }
   advise_huge_pages(bytes_.get(), size_);
-  in_parallel((size_ + kPiece - 1) / kPiece, kPiecesForOneThread, [&](std::size_t i) {
+  const std::size_t pieces = (size_ + kPiece - 1) / kPiece;
+  in_parallel(pieces, pieces > kPiecesForOneThread ? helpful_threads() : 1, [&](std::size_t i) {
     const std::size_t begin = i * kPiece;
     if (read_piece(file.get(), bytes_.get() + begin, begin, std::min(kPiece, size_ - begin)))
       return;

@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "map_files/huge_pages.h"
-#include "map_files/in_parallel.h"
 #include "map_files/map_limits.h"
 #include "map_files/map_sections.h"
 
@@ -119,7 +119,8 @@ void read_keypoints(SectionReader reader, const MapHeader& header,
   }
   reader.expect_end();
   for (std::size_t i = 0; i < frames.size();) i = share_descriptors(frames, i, traits);
-  in_parallel(frames.size(), kFramesForOneThread, [&](std::size_t i) {
+  const int threads = frames.size() > kFramesForOneThread ? helpful_threads() : 1;
+  in_parallel(frames.size(), threads, [&](std::size_t i) {
     fill_frame(records[i].data(), coding, traits, *frames[i]);
     // What comes out of bytes is of unit length whatever they are.
     const Frame& f = *frames[i];

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synthetic/parallel.h"
+#include "core/parallel.h"
 #include "synthetic/random.h"
 
 namespace dxslam {
@@ -103,17 +103,12 @@ class Baker {
   }
 
   void bake_all(int threads) {
-    const int stride = std::max(threads, 1);  // interleaved: neighbours cost alike
-    parallel_ranges(stride, stride, [&](int begin, int end) {
-      for (int part = begin; part < end; ++part) {
-        for (std::size_t i = part; i < world_.surfaces.size(); i += stride) {
-          Surface& s = world_.surfaces[i];
-          if (s.emission > 0.0F) {
-            s.light = {2, 2, std::vector<Eigen::Vector3f>(4, s.tint * s.emission)};
-          } else {
-            bake(s, bounds_[i], place_seed(s));
-          }
-        }
+    in_parallel(world_.surfaces.size(), threads, [&](std::size_t i) {
+      Surface& s = world_.surfaces[i];
+      if (s.emission > 0.0F) {
+        s.light = {2, 2, std::vector<Eigen::Vector3f>(4, s.tint * s.emission)};
+      } else {
+        bake(s, bounds_[i], place_seed(s));
       }
     });
   }

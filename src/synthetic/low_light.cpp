@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
+#include "core/split_mix.h"
 
 namespace dxslam {
 namespace {
@@ -17,19 +18,6 @@ constexpr double kPhotons = 400.0;    // at full scale
 constexpr double kReadNoise = 0.006;  // of full scale
 constexpr int kLevels = 256;
 constexpr double kFraction = 16777216.0;  // 2^24, what a random number leaves besides the column
-
-// SplitMix64 (Steele, Lea and Flood 2014): a counter and a mixing function, so any frame's noise
-// can be made without that of the frames before it.
-struct SplitMix64 {
-  std::uint64_t state;
-  std::uint64_t next() {
-    state += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31U);
-  }
-};
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
@@ -104,14 +92,15 @@ cv::Mat LowLight::apply(const cv::Mat& image, std::int64_t frame_index) const {
   cv::Mat grey = image;
   if (image.channels() == 3) cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
   cv::Mat dark(grey.size(), CV_8UC1);
-  SplitMix64 start{seed_ * 0xD1342543DE82EF95ULL + static_cast<std::uint64_t>(frame_index)};
-  SplitMix64 random{start.next()};
+  // Any frame's noise can be made without that of the frames before it.
+  SplitMix64 start(seed_ * 0xD1342543DE82EF95ULL + static_cast<std::uint64_t>(frame_index));
+  SplitMix64 random(start.bits());
   for (int y = 0; y < grey.rows; ++y) {
     const std::uint8_t* in = grey.ptr(y);
     std::uint8_t* out = dark.ptr(y);
     std::uint64_t bits = 0;
     for (int x = 0; x < grey.cols; ++x) {
-      bits = x % 2 == 0 ? random.next() : bits >> 32U;
+      bits = x % 2 == 0 ? random.bits() : bits >> 32U;
       const auto column = static_cast<std::uint32_t>(bits & 0xFFU);
       const auto fraction = static_cast<std::uint32_t>(bits & 0xFFFFFF00U) >> 8U;
       const Cell& cell = cells_[std::size_t{in[x]} * kLevels + column];

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "synthetic/parallel.h"
+#include "core/parallel.h"
 
 namespace dxslam {
 namespace {
@@ -144,9 +144,8 @@ class Painter {
     inverse_depth_.create(camera_.height, camera_.width, CV_32FC1);
     parallel_ranges(camera_.height, options_.threads,
                     [&](int begin, int end) { find_nearest(begin, end); });
-    parallel_ranges(camera_.height, options_.threads, [&](int begin, int end) {
-      for (int y = begin; y < end; ++y) shade_row(y, out);
-    });
+    in_parallel(static_cast<std::size_t>(camera_.height), options_.threads,
+                [&](std::size_t y) { shade_row(static_cast<int>(y), out); });
     return out;
   }
 

@@ -2,10 +2,9 @@
 // Copyright 2026 The dxslam authors
 #include "synthetic/surface_builder.h"
 
-#include <atomic>
 #include <cmath>
 
-#include "synthetic/parallel.h"
+#include "core/parallel.h"
 #include "synthetic/random.h"
 
 namespace dxslam {
@@ -97,12 +96,9 @@ void SurfaceBuilder::add_column(double x, double y, double radius, double z_low,
 
 std::vector<Texture> SurfaceBuilder::paint(std::uint64_t seed, int threads) const {
   std::vector<Texture> textures(requests_.size());
-  std::atomic<std::size_t> next{0};
-  parallel_ranges(threads, threads, [&](int, int) {
-    for (std::size_t i = next++; i < requests_.size(); i = next++) {
-      const Request& r = requests_[i];
-      textures[i] = Texture(paint_pattern(r.pattern, mix_seed(seed, r.seed), {r.width, r.height}));
-    }
+  in_parallel(requests_.size(), threads, [&](std::size_t i) {
+    const Request& r = requests_[i];
+    textures[i] = Texture(paint_pattern(r.pattern, mix_seed(seed, r.seed), {r.width, r.height}));
   });
   return textures;
 }

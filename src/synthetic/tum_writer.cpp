@@ -5,18 +5,17 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/calibration/calibration.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
-#include "synthetic/parallel.h"
 
 namespace dxslam {
 namespace {
@@ -131,26 +130,16 @@ bool write_tum_sequence(const SyntheticSequence& sequence, const std::string& fo
   const fs::path root(folder);
   prepare_folder(root, options.overwrite);
   const std::string type = options.png ? "png" : "jpg";
-  std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};
   std::mutex mutex;
   std::size_t done = 0;
-  std::exception_ptr failure;
-  parallel_ranges(options.threads, options.threads, [&](int, int) {
-    for (std::size_t i = next++; i < sequence.size() && !stop; i = next++) {
-      try {
-        write_frame(sequence.draw(i, 1), root, sequence.camera().depth_factor, type);
-        const std::lock_guard lock(mutex);
-        ++done;
-        if (options.progress && !options.progress(done, sequence.size())) stop = true;
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        failure = std::current_exception();
-        stop = true;
-      }
-    }
+  in_parallel(sequence.size(), options.threads, [&](std::size_t i) {
+    if (stop) return;
+    write_frame(sequence.draw(i, 1), root, sequence.camera().depth_factor, type);
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (options.progress && !options.progress(done, sequence.size())) stop = true;
   });
-  if (failure) std::rethrow_exception(failure);
   if (done < sequence.size()) return false;
   const auto path = [&](const char* name) { return (root / name).string(); };
   write_file_atomically(path("calibration.yaml"),

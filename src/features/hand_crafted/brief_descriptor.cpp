@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/split_mix.h"
+
 namespace dxslam {
 namespace {
 
@@ -16,30 +18,16 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kDeviation = 6.2;  // a fifth of the patch, as BRIEF recommends
 constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15ULL;
 
-/// SplitMix64, so that the pattern is the same with every compiler.
-class Random {
- public:
-  double uniform() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-  }
-  double gaussian() {
-    double sum = -6.0;
-    for (int i = 0; i < 12; ++i) sum += uniform();
-    return sum;
-  }
+double gaussian(SplitMix64& random) {
+  double sum = -6.0;
+  for (int i = 0; i < 12; ++i) sum += random.uniform();
+  return sum;
+}
 
- private:
-  std::uint64_t state_ = kSeed;
-};
-
-cv::Point2d draw_place(Random& random) {
+cv::Point2d draw_place(SplitMix64& random) {
   for (;;) {
-    const double x = kDeviation * random.gaussian();
-    const double y = kDeviation * random.gaussian();
+    const double x = kDeviation * gaussian(random);
+    const double y = kDeviation * gaussian(random);
     if (x * x + y * y <= (kRadius - 0.5) * (kRadius - 0.5)) return {x, y};
   }
 }
@@ -67,7 +55,7 @@ int direction(const std::uint8_t* centre, std::ptrdiff_t stride) {
 
 BriefDescriptor::BriefDescriptor(bool oriented)
     : oriented_(oriented), patterns_(oriented ? kDirections : 1) {
-  Random random;
+  SplitMix64 random(kSeed);
   for (int i = 0; i < kBits; ++i) {
     const cv::Point2d first = draw_place(random);
     const cv::Point2d second = draw_place(random);
