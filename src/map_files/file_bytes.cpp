@@ -2,17 +2,15 @@
 // Copyright 2026 The dxslam authors
 #include "map_files/file_bytes.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "io/primitives/input_file.h"
 #include "map_files/huge_pages.h"
 
 namespace dxslam {
@@ -20,22 +18,6 @@ namespace {
 
 constexpr std::size_t kPiece = std::size_t{2} << 20;  // bytes read at a time
 constexpr std::size_t kPiecesForOneThread = 4;
-
-class OpenFile {
- public:
-  // Not blocking: opening a pipe must not wait for somebody to write to it.
-  explicit OpenFile(const std::string& path)
-      : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~OpenFile() {
-    if (file_ >= 0) ::close(file_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int get() const { return file_; }
-
- private:
-  int file_;
-};
 
 // Whether all of `size` bytes at `offset` could be read.
 bool read_piece(int file, char* to, std::size_t offset, std::size_t size) {
@@ -54,17 +36,8 @@ bool read_piece(int file, char* to, std::size_t offset, std::size_t size) {
 
 FileBytes::FileBytes(const std::string& path, const std::string& expected, std::size_t max_bytes,
                      std::size_t start_bytes, const CheckStart& check_start) {
-  const OpenFile file(path);
-  if (file.get() < 0) {
-    throw InputError(errno == ENOENT ? fmt::format("{}: no such file, expected {}", path, expected)
-                                     : fmt::format("{}: cannot be read, expected {}: {}", path,
-                                                   expected, std::strerror(errno)));
-  }
-  struct stat status{};
-  if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw InputError(fmt::format("{}: not a regular file, expected {}", path, expected));
-  }
-  size_ = static_cast<std::size_t>(status.st_size);
+  const InputFile file(path, expected);
+  size_ = file.size();
   if (size_ > max_bytes) {
     throw InputError(fmt::format("{}: {} bytes, expected {} of at most {} bytes", path, size_,
                                  expected, max_bytes));
@@ -73,7 +46,7 @@ FileBytes::FileBytes(const std::string& path, const std::string& expected, std::
     return InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
   };
   std::string start(std::min(size_, start_bytes), '\0');
-  if (!read_piece(file.get(), start.data(), 0, start.size())) throw cannot_be_read();
+  if (!read_piece(file.descriptor(), start.data(), 0, start.size())) throw cannot_be_read();
   check_start(start, size_);
   bytes_.reset(static_cast<char*>(std::malloc(size_ + 1)));  // never of size 0
   if (bytes_ == nullptr) {
@@ -83,7 +56,7 @@ FileBytes::FileBytes(const std::string& path, const std::string& expected, std::
   const std::size_t pieces = (size_ + kPiece - 1) / kPiece;
   in_parallel(pieces, pieces > kPiecesForOneThread ? helpful_threads() : 1, [&](std::size_t i) {
     const std::size_t begin = i * kPiece;
-    if (read_piece(file.get(), bytes_.get() + begin, begin, std::min(kPiece, size_ - begin)))
+    if (read_piece(file.descriptor(), bytes_.get() + begin, begin, std::min(kPiece, size_ - begin)))
       return;
     throw cannot_be_read();
   });

@@ -232,7 +232,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(FbowFile, ThatIsMissingOrEmptyOrAFolderIsRefused) {
   const TestFolder folder;
   expect_input_error([&] { Vocabulary::load(folder / "none"); }, {"none", "expected a vocabulary"});
-  expect_input_error([&] { Vocabulary::load(folder.path()); }, {"no regular file"});
+  expect_input_error([&] { Vocabulary::load(folder.path()); }, {"not a regular file"});
   const std::string empty = folder.write("empty", std::string());
   expect_input_error([&] { Vocabulary::load(empty); }, {"is empty", "expected a vocabulary"});
   const std::string other = folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n"));
