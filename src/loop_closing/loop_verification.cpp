@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/area_counts.h"
 #include "core/error.h"
 #include "loop_closing/keyframe_group.h"
 #include "map/view_range.h"
@@ -15,12 +16,9 @@
 namespace dxslam {
 namespace {
 
-constexpr int kColumns = 8;  // of the grid on which spread is counted
-constexpr int kRows = 6;
 constexpr double kMaxViewAngle = 60.0;  // degrees; farther round, a point is taken for unseen
 constexpr double kMaxDistanceRatio = 2.5;
-constexpr int kMinExpectedInCell = 3;  // points due in a cell that is worth counting
-constexpr int kMinExpected = 40;       // points in view of a neighbour that is worth asking
+constexpr int kMinExpected = 40;  // points in view of a neighbour that is worth asking
 
 int shared_points(const Keyframe& keyframe, KeyframeId other) {
   for (const Covisible& c : keyframe.covisibles) {
@@ -228,30 +226,19 @@ class LoopVerifier {
     return observations;
   }
 
-  std::size_t cell_of(const Eigen::Vector2f& pixel) const {
-    return camera_.view().cell_of(pixel, kColumns, kRows);
-  }
-
   void collect_inliers() {
-    std::array<int, kColumns * kRows> found{};
-    std::array<int, kColumns * kRows> expected{};
+    AreaCounts found(camera_.view());
+    AreaCounts expected = found;
     for (std::size_t i = 0; i < fit_.matches.size(); ++i) {
       if (fit_.pose.inlier[i] == 0) continue;
       const auto k = static_cast<std::size_t>(fit_.matches[i].b);
       report_.inlier_matches.push_back(
           {static_cast<std::uint32_t>(k), points_[static_cast<std::size_t>(fit_.matches[i].a)]});
-      ++found[cell_of(query_frame().pixels[k])];
+      found.add(query_frame().pixels[k]);
     }
-    for (const PixelPrediction& p : fit_.predictions) ++expected[cell_of(p.pixel)];
-    int due = 0;
-    int covered = 0;
-    for (std::size_t c = 0; c < found.size(); ++c) {
-      if (found[c] > 0) ++report_.cells;
-      if (expected[c] < kMinExpectedInCell) continue;
-      ++due;
-      if (found[c] > 0) ++covered;
-    }
-    report_.covered_share = due > 0 ? static_cast<double>(covered) / due : 0.0;
+    for (const PixelPrediction& p : fit_.predictions) expected.add(p.pixel);
+    report_.cells = found.occupied();
+    report_.covered_share = expected.share_in(found, 0.0);
     std::sort(report_.inlier_matches.begin(), report_.inlier_matches.end(),
               [](const LoopMatch& a, const LoopMatch& b) { return a.keypoint < b.keypoint; });
   }

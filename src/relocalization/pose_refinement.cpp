@@ -3,22 +3,17 @@
 #include "relocalization/pose_refinement.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
 #include <unordered_map>
 
+#include "core/area_counts.h"
 #include "map/view_range.h"
 #include "matching/guided_matching.h"
 
 namespace dxslam {
 namespace {
-
-// Areas of the image for the coverage; one with fewer keypoints or points in view says nothing.
-constexpr int kAreaColumns = 8;
-constexpr int kAreaRows = 6;
-constexpr int kFew = 3;
 
 // The map point of `match` as an observation at `pose`. A depth reading beside an edge is often
 // that of another surface: it counts only where it agrees with the pose so far.
@@ -118,29 +113,16 @@ std::vector<PointId> PoseRefiner::local_points(KeyframeId reference) const {
 
 double PoseRefiner::coverage(const std::vector<Eigen::Vector2f>& in_view,
                              const std::vector<PointMatch>& inliers) const {
-  struct Area {
-    int keypoints = 0;
-    int points = 0;
-    bool agrees = false;
-  };
-  std::array<Area, kAreaColumns * kAreaRows> areas{};
-  const PixelBox view = camera_.view();
-  const auto area_of = [&](const Eigen::Vector2f& pixel) -> Area& {
-    return areas[view.cell_of(pixel, kAreaColumns, kAreaRows)];
-  };
-  for (const Eigen::Vector2f& pixel : frame_.pixels) ++area_of(pixel).keypoints;
-  for (const Eigen::Vector2f& pixel : in_view) ++area_of(pixel).points;
+  // An area with few keypoints or few points in view says nothing.
+  AreaCounts keypoints(camera_.view());
+  AreaCounts due = keypoints;
+  AreaCounts agreeing = keypoints;
+  for (const Eigen::Vector2f& pixel : frame_.pixels) keypoints.add(pixel);
+  for (const Eigen::Vector2f& pixel : in_view) due.add(pixel);
   for (const PointMatch& m : inliers) {
-    area_of(frame_.pixels[static_cast<std::size_t>(m.keypoint)]).agrees = true;
+    agreeing.add(frame_.pixels[static_cast<std::size_t>(m.keypoint)]);
   }
-  int telling = 0;
-  int agreeing = 0;
-  for (const Area& area : areas) {
-    if (area.keypoints < kFew || area.points < kFew) continue;
-    ++telling;
-    agreeing += area.agrees ? 1 : 0;
-  }
-  return telling > 0 ? static_cast<double>(agreeing) / telling : 0.0;
+  return due.limited_by(keypoints).share_in(agreeing, 0.0);
 }
 
 std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& points, double radius,

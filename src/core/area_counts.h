@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "core/camera.h"
+
+namespace dxslam {
+
+/// How many pixels lie in each of 8 x 6 areas of an image: whether things are spread over it.
+class AreaCounts {
+ public:
+  static constexpr int kColumns = 8;
+  static constexpr int kRows = 6;
+
+  /// Of the pixels of a view, see Camera::view().
+  explicit AreaCounts(const PixelBox& view) : view_(view) {}
+
+  /// A pixel beyond the rim counts for the nearest area.
+  void add(const Eigen::Vector2f& pixel);
+  /// Of each area the smaller count of the two.
+  AreaCounts limited_by(const AreaCounts& other) const;
+  /// Areas that are not empty.
+  int occupied() const;
+  /// Of the areas that hold three or more, which are enough to tell, the share that is not empty in
+  /// `found`; `without` if there is none.
+  double share_in(const AreaCounts& found, double without) const;
+
+ private:
+  PixelBox view_;
+  std::array<int, static_cast<std::size_t>(kColumns* kRows)> counts_{};
+};
+
+}  // namespace dxslam
