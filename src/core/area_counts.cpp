@@ -28,7 +28,7 @@ int AreaCounts::occupied() const {
       std::count_if(counts_.begin(), counts_.end(), [](int count) { return count > 0; }));
 }
 
-double AreaCounts::share_in(const AreaCounts& found, double without) const {
+double AreaCounts::share_in(const AreaCounts& found) const {
   int telling = 0;
   int covered = 0;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
@@ -36,7 +36,7 @@ double AreaCounts::share_in(const AreaCounts& found, double without) const {
     ++telling;
     if (found.counts_[i] > 0) ++covered;
   }
-  return telling > 0 ? static_cast<double>(covered) / telling : without;
+  return telling > 0 ? static_cast<double>(covered) / telling : 0.0;
 }
 
 }  // namespace dxslam

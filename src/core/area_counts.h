@@ -15,6 +15,7 @@ class AreaCounts {
  public:
   static constexpr int kColumns = 8;
   static constexpr int kRows = 6;
+  static constexpr std::size_t kAreas = 48;
 
   /// Of the pixels of a view, see Camera::view().
   explicit AreaCounts(const PixelBox& view) : view_(view) {}
@@ -26,12 +27,12 @@ class AreaCounts {
   /// Areas that are not empty.
   int occupied() const;
   /// Of the areas that hold three or more, which are enough to tell, the share that is not empty in
-  /// `found`; `without` if there is none.
-  double share_in(const AreaCounts& found, double without) const;
+  /// `found`; 0 if there is none.
+  double share_in(const AreaCounts& found) const;
 
  private:
   PixelBox view_;
-  std::array<int, static_cast<std::size_t>(kColumns* kRows)> counts_{};
+  std::array<int, kAreas> counts_{};
 };
 
 }  // namespace dxslam

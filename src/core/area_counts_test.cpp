@@ -24,18 +24,18 @@ TEST(AreaCounts, PixelsOfOneAreaCountTogether) {
 TEST(AreaCounts, OnlyAreasWithThreeOrMoreAreToldFrom) {
   const AreaCounts due =
       counts_of({{1, 1}, {2, 2}, {3, 3}, {100, 1}, {101, 1}, {102, 1}, {300, 300}});
-  EXPECT_EQ(due.share_in(counts_of({}), 1.0), 0.0);
-  EXPECT_EQ(due.share_in(counts_of({{5, 5}}), 1.0), 0.5);
-  EXPECT_EQ(due.share_in(counts_of({{5, 5}, {110, 10}, {300, 300}}), 0.0), 1.0);
-  EXPECT_EQ(counts_of({{1, 1}, {2, 2}}).share_in(due, 0.25), 0.25);
+  EXPECT_EQ(due.share_in(counts_of({})), 0.0);
+  EXPECT_EQ(due.share_in(counts_of({{5, 5}})), 0.5);
+  EXPECT_EQ(due.share_in(counts_of({{5, 5}, {110, 10}, {300, 300}})), 1.0);
+  EXPECT_EQ(counts_of({{1, 1}, {2, 2}}).share_in(due), 0.0);
 }
 
 TEST(AreaCounts, AreLimitedAreaByArea) {
   const AreaCounts due = counts_of({{1, 1}, {2, 2}, {3, 3}, {100, 1}, {101, 1}, {102, 1}});
   const AreaCounts limited = due.limited_by(counts_of({{1, 1}, {100, 1}, {101, 1}, {102, 1}}));
   EXPECT_EQ(limited.occupied(), 2);
-  EXPECT_EQ(limited.share_in(counts_of({{1, 1}}), 1.0), 0.0);
-  EXPECT_EQ(limited.share_in(counts_of({{101, 1}}), 0.0), 1.0);
+  EXPECT_EQ(limited.share_in(counts_of({{1, 1}})), 0.0);
+  EXPECT_EQ(limited.share_in(counts_of({{101, 1}})), 1.0);
 }
 
 }  // namespace

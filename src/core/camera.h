@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -59,6 +60,12 @@ struct Camera {
   Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {
     const double inverse_z = 1.0 / point_in_camera.z();
     return {fx * point_in_camera.x() * inverse_z + cx, fy * point_in_camera.y() * inverse_z + cy};
+  }
+  /// Squared distance in pixels from `pixel` to where a point in the camera frame appears; infinite
+  /// for a point that is not in front of the camera.
+  double squared_error(const Eigen::Vector3d& point_in_camera, const Eigen::Vector2d& pixel) const {
+    if (point_in_camera.z() <= 0.0) return std::numeric_limits<double>::infinity();
+    return (project(point_in_camera) - pixel).squaredNorm();
   }
   /// Point in the camera frame of an undistorted pixel at `depth` metres along z.
   Eigen::Vector3d unproject(const Eigen::Vector2d& pixel, double depth) const {

@@ -56,6 +56,13 @@ TEST(Camera, UnprojectInvertsProject) {
   EXPECT_EQ(c.project({0.0, 0.0, 3.0}), Eigen::Vector2d(c.cx, c.cy));
 }
 
+TEST(Camera, MeasuresHowFarAPointAppearsFromAPixel) {
+  const Camera c = freiburg1();
+  EXPECT_NEAR(c.squared_error({0.0, 0.0, 3.0}, {c.cx + 3.0, c.cy - 4.0}), 25.0, 1e-12);
+  EXPECT_TRUE(std::isinf(c.squared_error({0.0, 0.0, 0.0}, {c.cx, c.cy})));
+  EXPECT_TRUE(std::isinf(c.squared_error({0.0, 0.0, -3.0}, {c.cx, c.cy})));
+}
+
 TEST(Camera, DistortInvertsUndistortOverTheImage) {
   const Camera c = freiburg1();
   for (int y = 0; y < c.height; y += 40) {

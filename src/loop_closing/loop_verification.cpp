@@ -188,19 +188,12 @@ class LoopVerifier {
 
   // Depths are left out of the search, so that they can bear witness afterwards.
   std::vector<PixelPrediction> predict(const SE3& world_from_camera, double radius) const {
-    const SE3 camera_from_world = world_from_camera.inverse();
     const float pixels = static_cast<float>(radius * camera_.width / 640.0);
-    const ViewRange range(kMaxViewAngle, kMaxDistanceRatio);
+    const PointPredictor predictor(camera_, world_from_camera, {kMaxViewAngle, kMaxDistanceRatio});
     std::vector<PixelPrediction> predictions;
     for (int row = 0; row < descriptors_.rows; ++row) {
-      const MapPoint& p = point(row);
-      const Eigen::Vector3d in_camera = camera_from_world * p.position;
-      const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(in_camera);
-      if (!pixel) continue;
-      if (!range.contains(world_from_camera.translation(), p.position, p.normal, p.distance)) {
-        continue;
-      }
-      predictions.push_back({row, pixel->cast<float>(), pixels, 0.0F});
+      const auto place = predictor.place_of(point(row));
+      if (place) predictions.push_back({row, place->pixel.cast<float>(), pixels, 0.0F});
     }
     return predictions;
   }
@@ -238,7 +231,7 @@ class LoopVerifier {
     }
     for (const PixelPrediction& p : fit_.predictions) expected.add(p.pixel);
     report_.cells = found.occupied();
-    report_.covered_share = expected.share_in(found, 0.0);
+    report_.covered_share = expected.share_in(found);
     std::sort(report_.inlier_matches.begin(), report_.inlier_matches.end(),
               [](const LoopMatch& a, const LoopMatch& b) { return a.keypoint < b.keypoint; });
   }
@@ -258,10 +251,9 @@ class LoopVerifier {
       const auto k = static_cast<std::size_t>(m.b);
       if (!frame.has_depth(k)) continue;
       const Eigen::Vector3d in_camera = camera_from_world * point(m.a).position;
-      const double error2 =
-          (camera_.project(in_camera) - frame.pixels[k].cast<double>()).squaredNorm();
+      const double error2 = camera_.squared_error(in_camera, frame.pixels[k].cast<double>());
       const double sigma = static_cast<double>(frame.sigmas[k]);
-      if (in_camera.z() <= 0.0 || error2 > options_.pose.chi2_pixel * sigma * sigma) continue;
+      if (error2 > options_.pose.chi2_pixel * sigma * sigma) continue;
       ++measured;
       if (depth_agrees(frame, camera_from_world, m)) ++agreeing;
     }

@@ -32,22 +32,6 @@ void append_nearby(const Map& map, KeyframeId reference, const LocalMapOptions& 
   for (std::size_t i = 0; i < n; ++i) ids.push_back(nearby[i].second);
 }
 
-std::vector<PointId> points_of(const Map& map, const std::vector<KeyframeId>& keyframes,
-                               std::size_t max_points) {
-  std::vector<PointId> ids;
-  for (const KeyframeId k : keyframes) {
-    for (const PointId p : map.keyframe(k).points) {
-      if (p != kNoId) ids.push_back(p);
-    }
-    if (ids.size() > 4 * max_points) break;  // most are repeated a few times
-  }
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  if (ids.size() > max_points)
-    ids.erase(ids.begin(), ids.end() - static_cast<std::ptrdiff_t>(max_points));
-  return ids;
-}
-
 }  // namespace
 
 int LocalMap::find(PointId id) const {
@@ -69,6 +53,21 @@ std::vector<KeyframeId> local_keyframes(const Map& map, KeyframeId reference,
     ids.push_back(c.keyframe);
   }
   append_nearby(map, reference, options, ids);
+  return ids;
+}
+
+std::vector<PointId> points_of(const Map& map, const std::vector<KeyframeId>& keyframes,
+                               std::size_t most) {
+  std::vector<PointId> ids;
+  for (const KeyframeId k : keyframes) {
+    for (const PointId p : map.keyframe(k).points) {
+      if (p != kNoId) ids.push_back(p);
+    }
+    if (ids.size() / 4 > most) break;  // most are repeated a few times
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  if (ids.size() > most) ids.erase(ids.begin(), ids.end() - static_cast<std::ptrdiff_t>(most));
   return ids;
 }
 

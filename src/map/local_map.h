@@ -62,6 +62,10 @@ using LocalMapPtr = std::shared_ptr<const LocalMap>;
 std::vector<KeyframeId> local_keyframes(const Map& map, KeyframeId reference,
                                         const LocalMapOptions& options);
 
+/// The points that the keyframes see, rising; of more than `most` the newest.
+std::vector<PointId> points_of(const Map& map, const std::vector<KeyframeId>& keyframes,
+                               std::size_t most);
+
 LocalMapPtr make_local_map(const Map& map, KeyframeId reference, std::uint64_t version,
                            const LocalMapOptions& options);
 

@@ -5,6 +5,10 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <numbers>
+#include <optional>
+
+#include "core/camera.h"
+#include "map/map_types.h"
 
 namespace dxslam {
 
@@ -32,6 +36,39 @@ class ViewRange {
  private:
   double min_cosine_;
   double max_ratio_;
+};
+
+/// Where the points of a map should appear to a camera. One object serves one pose of it; it refers
+/// to the camera.
+class PointPredictor {
+ public:
+  PointPredictor(const Camera& camera, const SE3& world_from_camera, const ViewRange& range)
+      : camera_(camera),
+        camera_from_world_(world_from_camera.inverse()),
+        centre_(world_from_camera.translation()),
+        range_(range) {}
+
+  struct Place {
+    Eigen::Vector2d pixel;
+    double depth = 0.0;  ///< metres along the camera's z
+  };
+  /// Empty if the point is out of view or seen from out of the range. Arguments as in MapPoint.
+  std::optional<Place> place_of(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+                                float usual_distance) const {
+    const Eigen::Vector3d p = camera_from_world_ * position;
+    const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
+    if (!pixel || !range_.contains(centre_, position, normal, usual_distance)) return std::nullopt;
+    return Place{*pixel, p.z()};
+  }
+  std::optional<Place> place_of(const MapPoint& point) const {
+    return place_of(point.position, point.normal, point.distance);
+  }
+
+ private:
+  const Camera& camera_;
+  SE3 camera_from_world_;
+  Eigen::Vector3d centre_;
+  ViewRange range_;
 };
 
 }  // namespace dxslam

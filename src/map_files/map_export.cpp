@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <set>
@@ -79,8 +80,10 @@ double mean_error(const Map& map, const MapPoint& p, const Camera& camera) {
   for (const PointObservation& o : p.observations) {
     const Keyframe& k = map.keyframe(o.keyframe);
     const Eigen::Vector3d in_camera = k.world_from_camera.inverse() * p.position;
-    if (in_camera.z() <= 0.0) continue;
-    sum += (camera.project(in_camera) - k.frame->pixels[o.keypoint].cast<double>()).norm();
+    const double error2 =
+        camera.squared_error(in_camera, k.frame->pixels[o.keypoint].cast<double>());
+    if (std::isinf(error2)) continue;  // behind the camera
+    sum += std::sqrt(error2);
     ++count;
   }
   return count > 0 ? sum / count : -1.0;

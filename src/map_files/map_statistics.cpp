@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace dxslam {
 namespace {
@@ -16,12 +17,13 @@ void add_reprojection(const StoredMap& stored, MapStatistics& statistics) {
     for (const PointObservation& o : p.observations) {
       const Keyframe& k = map.keyframe(o.keyframe);
       const Eigen::Vector3d in_camera = k.world_from_camera.inverse() * p.position;
-      if (in_camera.z() <= 0.0) {
+      const double error2 =
+          stored.header.camera.squared_error(in_camera, k.frame->pixels[o.keypoint].cast<double>());
+      if (std::isinf(error2)) {
         ++statistics.behind;
-        continue;
+      } else {
+        errors.push_back(std::sqrt(error2));
       }
-      const Eigen::Vector2d seen = k.frame->pixels[o.keypoint].cast<double>();
-      errors.push_back((stored.header.camera.project(in_camera) - seen).norm());
     }
     statistics.observations += p.observations.size();
   }

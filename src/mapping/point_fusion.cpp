@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <optional>
 
 #include "geometry/triangulation.h"
+#include "map/view_range.h"
 #include "mapping/local_mapper.h"
 #include "matching/guided_matching.h"
 
@@ -16,7 +17,7 @@
 namespace dxslam {
 namespace {
 
-constexpr double kMinViewCosine = 0.5;  // points are not fused across more than 60 degrees
+constexpr double kMaxViewAngle = 60.0;  // degrees across which points are fused, at any distance
 
 struct Candidates {
   std::vector<PixelPrediction> predictions;
@@ -28,20 +29,17 @@ Candidates predict(const Map& map, const std::vector<PointId>& points, const Key
                    const Camera& camera, float radius) {
   Candidates candidates;
   const Frame& frame = *target.frame;
-  const SE3 camera_from_world = target.world_from_camera.inverse();
+  const PointPredictor predictor(camera, target.world_from_camera,
+                                 {kMaxViewAngle, std::numeric_limits<double>::infinity()});
   candidates.descriptors.create(static_cast<int>(points.size()), frame.descriptors.cols,
                                 frame.descriptors.type());
   for (const PointId id : points) {
-    const MapPoint& p = map.point(id);
-    const Eigen::Vector3d in_camera = camera_from_world * p.position;
-    const std::optional<Eigen::Vector2d> pixel = camera.project_into_view(in_camera);
-    if (!pixel) continue;
-    const Eigen::Vector3d ray = target.world_from_camera.translation() - p.position;
-    if (ray.dot(p.normal) < kMinViewCosine * ray.norm()) continue;
+    const auto place = predictor.place_of(map.point(id));
+    if (!place) continue;
     const int row = static_cast<int>(candidates.points.size());
     map.descriptor_of(id).copyTo(candidates.descriptors.row(row));
     candidates.predictions.push_back(
-        {row, pixel->cast<float>(), radius, static_cast<float>(in_camera.z())});
+        {row, place->pixel.cast<float>(), radius, static_cast<float>(place->depth)});
     candidates.points.push_back(id);
   }
   return candidates;
@@ -125,13 +123,8 @@ int LocalMapper::fuse_with_neighbours(KeyframeId keyframe) {
     pause();
     fused += fuse_points(points_seen(map_, keyframe), neighbour, camera_, fusion, map_);
   }
-  std::vector<PointId> points;
-  for (const KeyframeId neighbour : neighbours) {
-    const std::vector<PointId> seen = points_seen(map_, neighbour);
-    points.insert(points.end(), seen.begin(), seen.end());
-  }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  const std::vector<PointId> points =
+      points_of(map_, neighbours, std::numeric_limits<std::size_t>::max());
   return fused + fuse_points(points, keyframe, camera_, fusion, map_);
 }
 
@@ -157,8 +150,9 @@ int LocalMapper::create_points_by_triangulation(KeyframeId keyframe) {
       if (!point) continue;
       const Eigen::Vector3d in_here = here.world_from_camera.inverse() * *point;
       const Eigen::Vector3d in_there = there.world_from_camera.inverse() * *point;
-      if ((camera_.project(in_here) - pixel).norm() > options_.epipolar_tolerance) continue;
-      if ((camera_.project(in_there) - other).norm() > options_.epipolar_tolerance) continue;
+      const double most = options_.epipolar_tolerance * options_.epipolar_tolerance;
+      if (camera_.squared_error(in_here, pixel) > most) continue;
+      if (camera_.squared_error(in_there, other) > most) continue;
       const PointId id = map_.add_point(*point, keyframe, static_cast<std::uint32_t>(i));
       map_.add_observation(id, c.keyframe, static_cast<std::uint32_t>(j));
       map_.refresh_point(id);

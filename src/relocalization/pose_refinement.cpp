@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <unordered_map>
 
 #include "core/area_counts.h"
@@ -98,17 +97,8 @@ KeyframeId PoseRefiner::best_reference(const std::vector<PointMatch>& matches) c
 }
 
 std::vector<PointId> PoseRefiner::local_points(KeyframeId reference) const {
-  std::vector<PointId> points;
-  const std::size_t most = static_cast<std::size_t>(options_.local_map.max_points);
-  for (const KeyframeId id : local_keyframes(map_, reference, options_.local_map)) {
-    for (const PointId p : map_.keyframe(id).points) {
-      if (p != kNoId) points.push_back(p);
-    }
-    if (points.size() > 4 * most) break;  // most are there a few times
-  }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
+  return points_of(map_, local_keyframes(map_, reference, options_.local_map),
+                   static_cast<std::size_t>(options_.local_map.max_points));
 }
 
 double PoseRefiner::coverage(const std::vector<Eigen::Vector2f>& in_view,
@@ -122,7 +112,7 @@ double PoseRefiner::coverage(const std::vector<Eigen::Vector2f>& in_view,
   for (const PointMatch& m : inliers) {
     agreeing.add(frame_.pixels[static_cast<std::size_t>(m.keypoint)]);
   }
-  return due.limited_by(keypoints).share_in(agreeing, 0.0);
+  return due.limited_by(keypoints).share_in(agreeing);
 }
 
 std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& points, double radius,
@@ -134,27 +124,21 @@ std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& poi
     matched.push_back(match.id);
   }
   std::sort(matched.begin(), matched.end());
-  const SE3 camera_from_world = pose.world_from_camera.inverse();
   const float window = static_cast<float>(radius * camera_.width / 640.0);
-  const ViewRange range(options_.max_view_angle, options_.max_distance_ratio);
+  const PointPredictor predictor(camera_, pose.world_from_camera,
+                                 {options_.max_view_angle, options_.max_distance_ratio});
   std::vector<PixelPrediction> predictions;
   std::vector<PointId> ids;
   std::vector<Eigen::Vector2f> in_view;
   cv::Mat descriptors(static_cast<int>(points.size()), frame_.descriptors.cols,
                       frame_.descriptors.type());
   for (const PointId id : points) {
-    const MapPoint& point = map_.point(id);
-    const Eigen::Vector3d p = camera_from_world * point.position;
-    const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
-    if (!pixel) continue;
-    if (!range.contains(pose.world_from_camera.translation(), point.position, point.normal,
-                        point.distance)) {
-      continue;
-    }
-    in_view.push_back(pixel->cast<float>());
+    const auto place = predictor.place_of(map_.point(id));
+    if (!place) continue;
+    in_view.push_back(place->pixel.cast<float>());
     if (std::binary_search(matched.begin(), matched.end(), id)) continue;
     const int row = static_cast<int>(ids.size());
-    predictions.push_back({row, in_view.back(), window, static_cast<float>(p.z())});
+    predictions.push_back({row, in_view.back(), window, static_cast<float>(place->depth)});
     ids.push_back(id);
     std::memcpy(descriptors.ptr(row), map_.descriptor_of(id).ptr(),
                 descriptors.elemSize() * static_cast<std::size_t>(descriptors.cols));

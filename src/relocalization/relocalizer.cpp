@@ -121,10 +121,8 @@ class GroupAttempt {
       const std::size_t k = static_cast<std::size_t>(m.keypoint);
       const Eigen::Vector3d p =
           camera_from_world * points.positions[static_cast<std::size_t>(m.point)];
-      if (p.z() <= 0.0 ||
-          (camera_.project(p) - frame_.pixels[k].cast<double>()).norm() > threshold) {
+      if (camera_.squared_error(p, frame_.pixels[k].cast<double>()) > threshold * threshold)
         continue;
-      }
       const double depth = static_cast<double>(frame_.depths[k]);
       if (depth > 0.0 && std::abs(p.z() - depth) > options_.depth_tolerance * p.z()) continue;
       ++matched;

@@ -45,8 +45,7 @@ int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi
     PoseObservation& o = observations[i];
     if (report.inlier[i] != 0 || o.disparity <= 0.0) continue;
     const Eigen::Vector3d p = camera_from_world * o.point_in_world;
-    if (p.z() <= 0.0) continue;
-    if ((camera.project(p) - o.pixel).squaredNorm() > chi2_pixel * o.sigma * o.sigma) continue;
+    if (camera.squared_error(p, o.pixel) > chi2_pixel * o.sigma * o.sigma) continue;
     o.disparity = 0.0;
     ++dropped;
   }
@@ -57,10 +56,8 @@ int count_near(const Camera& camera, const Frame& frame, const SE3& world_from_c
                const std::vector<KnownPoint>& known, double radius) {
   const SE3 camera_from_world = world_from_camera.inverse();
   return static_cast<int>(std::count_if(known.begin(), known.end(), [&](const KnownPoint& k) {
-    const Eigen::Vector3d p = camera_from_world * k.position;
-    if (p.z() <= Camera::kNearest) return false;
     const Eigen::Vector2d pixel = frame.pixels[static_cast<std::size_t>(k.keypoint)].cast<double>();
-    return (camera.project(p) - pixel).squaredNorm() <= radius * radius;
+    return camera.squared_error(camera_from_world * k.position, pixel) <= radius * radius;
   }));
 }
 

@@ -311,20 +311,16 @@ Tracker::OptionalEstimate Tracker::optimise(const Frame& frame, const SE3& start
 
 std::vector<PixelPrediction> Tracker::predict_local_points(const SE3& world_from_camera,
                                                            const std::vector<char>& known) const {
-  const SE3 camera_from_world = world_from_camera.inverse();
-  const ViewRange range(options_.max_view_angle, options_.max_distance_ratio);
+  const PointPredictor predictor(camera_, world_from_camera,
+                                 {options_.max_view_angle, options_.max_distance_ratio});
   std::vector<PixelPrediction> predictions;
   for (std::size_t i = 0; i < local_->size(); ++i) {
     if (known[i] != 0) continue;
-    const Eigen::Vector3d p = camera_from_world * local_->positions[i];
-    const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
-    if (!pixel) continue;
-    if (!range.contains(world_from_camera.translation(), local_->positions[i], local_->normals[i],
-                        local_->distances[i])) {
-      continue;
-    }
-    predictions.push_back({static_cast<int>(i), pixel->cast<float>(), scaled(options_.local_radius),
-                           static_cast<float>(p.z())});
+    const auto place =
+        predictor.place_of(local_->positions[i], local_->normals[i], local_->distances[i]);
+    if (!place) continue;
+    predictions.push_back({static_cast<int>(i), place->pixel.cast<float>(),
+                           scaled(options_.local_radius), static_cast<float>(place->depth)});
   }
   return predictions;
 }
