@@ -54,6 +54,7 @@ void take_bundle_steps(benchmark::State& state) {
   stage.active.assign(scene.problem.observations.size(), 1);
   stage.iterations = 5;
   stage.max_dense_poses = state.range(2) == 0 ? 1000000 : 0;
+  stage.max_coupled_share = 1.0;
   BundleState start;
   for (const BundleProblem::Pose& pose : scene.problem.poses) {
     start.camera_from_world.push_back(pose.world_from_camera.inverse());

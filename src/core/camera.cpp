@@ -52,11 +52,12 @@ bool is_undistorted_by(const Camera& camera, const Eigen::Vector2d& raw,
 std::size_t PixelBox::cell_of(const Eigen::Vector2f& pixel, int columns, int rows) const {
   const auto part = [](double at, double size, int parts) {
     const double cell = at / size * parts;
-    return cell > 0.0 ? static_cast<int>(std::min(cell, parts - 1.0)) : 0;
+    return cell > 0.0 ? static_cast<std::size_t>(std::min(cell, parts - 1.0)) : 0;
   };
-  const int column = part(static_cast<double>(pixel.x()) - left, right - left + 1.0, columns);
-  const int row = part(static_cast<double>(pixel.y()) - top, bottom - top + 1.0, rows);
-  return static_cast<std::size_t>(row * columns + column);
+  const std::size_t column =
+      part(static_cast<double>(pixel.x()) - left, right - left + 1.0, columns);
+  const std::size_t row = part(static_cast<double>(pixel.y()) - top, bottom - top + 1.0, rows);
+  return row * static_cast<std::size_t>(columns) + column;
 }
 
 void Camera::prepare(const std::string& where) {
@@ -83,8 +84,9 @@ void Camera::prepare(const std::string& where) {
   const double infinity = std::numeric_limits<double>::infinity();
   undistorted_ = {infinity, infinity, -infinity, -infinity};
   for (int i = 0; i < (kParts + 1) * (kParts + 1); ++i) {
-    const Eigen::Vector2d raw((width - 1.0) * (i % (kParts + 1)) / kParts,
-                              (height - 1.0) * (i / (kParts + 1)) / kParts);
+    const int column = i % (kParts + 1);
+    const int row = i / (kParts + 1);
+    const Eigen::Vector2d raw((width - 1.0) * column / kParts, (height - 1.0) * row / kParts);
     const Eigen::Vector2d pixel = undistort(raw);
     if (!is_undistorted_by(*this, raw, pixel)) {
       throw InputError(fmt::format(

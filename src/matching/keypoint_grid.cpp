@@ -29,9 +29,9 @@ KeypointGrid::KeypointGrid(const std::vector<Eigen::Vector2f>& pixels, float cel
   };
   columns_ = cells(top.x() - origin_.x());
   rows_ = cells(top.y() - origin_.y());
-  starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  starts_.assign(cell(0, rows_) + 1, 0);
   const auto cell_of = [&](const Eigen::Vector2f& p) {
-    return static_cast<std::size_t>(clamp_row(p.y()) * columns_ + clamp_column(p.x()));
+    return cell(clamp_column(p.x()), clamp_row(p.y()));
   };
   const auto pixel = [&](int i) { return pixels[static_cast<std::size_t>(i)]; };
   for (const int i : finite) ++starts_[cell_of(pixel(i)) + 1];

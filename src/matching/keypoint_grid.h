@@ -21,8 +21,8 @@ class KeypointGrid {
     const int x0 = clamp_column(center.x() - radius), x1 = clamp_column(center.x() + radius);
     const int y0 = clamp_row(center.y() - radius), y1 = clamp_row(center.y() + radius);
     for (int y = y0; y <= y1; ++y) {
-      const std::size_t first = static_cast<std::size_t>(y * columns_ + x0);
-      const std::size_t last = static_cast<std::size_t>(y * columns_ + x1) + 1;
+      const std::size_t first = cell(x0, y);
+      const std::size_t last = cell(x1, y) + 1;
       for (int k = starts_[first]; k < starts_[last]; ++k) {
         const int index = indices_[static_cast<std::size_t>(k)];
         const Eigen::Vector2f d = (*pixels_)[static_cast<std::size_t>(index)] - center;
@@ -32,6 +32,10 @@ class KeypointGrid {
   }
 
  private:
+  std::size_t cell(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
   int clamp_column(float x) const;
   int clamp_row(float y) const;
 

@@ -33,6 +33,8 @@ struct BundleStage {
   /// With more free poses the system that is left after the points were eliminated is sparse;
   /// else its memory grows with the square and its time with the cube of their number.
   int max_dense_poses = 400;
+  double max_coupled_share =
+      0.25;  ///< of pairs of poses with common points; more are solved densely
 };
 
 inline bool has_depth(const BundleProblem::Observation& o) { return o.disparity > 0.0; }

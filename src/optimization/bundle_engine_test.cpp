@@ -41,6 +41,7 @@ class BundleEngineTest : public testing::TestWithParam<std::tuple<bool, int>> {
     stage_.iterations = 100;
     stage_.robust = std::get<0>(GetParam());
     stage_.max_dense_poses = std::get<1>(GetParam());
+    stage_.max_coupled_share = 1.0;
   }
 
   Eigen::Vector3d residual(const BundleState& state, std::size_t i) const {

@@ -72,7 +72,7 @@ class BundleSceneMaker {
     scene.true_points.push_back(truth);
     Eigen::Vector3d noise;
     for (int k = 0; k < 3; ++k) noise(k) = options_.point_noise * random_.normal();
-    scene.problem.points.push_back(truth + noise);
+    scene.problem.points.emplace_back(truth + noise);
 
     int seen = 0;
     for (int k = 0; k < options_.poses && seen < options_.observations_per_point; ++k) {

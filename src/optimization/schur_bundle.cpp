@@ -31,6 +31,14 @@ struct Block66 {
   Column column[6];
 };
 
+/// The six numbers of a column.
+inline Eigen::Map<Vector6d> numbers(Column& column) {
+  return Eigen::Map<Vector6d>(reinterpret_cast<double*>(&column));
+}
+inline Eigen::Map<const Vector6d> numbers(const Column& column) {
+  return Eigen::Map<const Vector6d>(reinterpret_cast<const double*>(&column));
+}
+
 /// Place of block (a, b), a >= b, in a lower triangle of blocks.
 inline std::size_t triangle(std::size_t a, std::size_t b) { return a * (a + 1) / 2 + b; }
 
@@ -62,7 +70,8 @@ DXSLAM_INLINE_KERNEL void couple(const int* slots, const Block63* scaled, int co
   }
 }
 
-constexpr double kTinyDiagonal = 1e-9;  // keeps directions without any constraint solvable
+constexpr std::size_t kMostDensePoses = 1500;  // 650 MB
+constexpr double kTinyDiagonal = 1e-9;         // keeps directions without any constraint solvable
 
 /// An observation that takes part, laid out for the sweep over points.
 struct Link {
@@ -117,9 +126,9 @@ class SchurSolver {
     cross_.resize(links_.size());
     scaled_.resize(links_.size(), Block63{});
     for (const Link& link : links_) link_slots_.push_back(link.slot);
-    if (poses_.size() > static_cast<std::size_t>(stage.max_dense_poses)) {
-      find_couplings();
-    } else {
+    if (poses_.size() > static_cast<std::size_t>(stage.max_dense_poses)) find_couplings();
+    if (!sparse_) {
+      places_.clear();
       blocks_.resize(triangle(poses_.size(), 0));
       reduced_.resize(size, size);
     }
@@ -205,7 +214,8 @@ class SchurSolver {
     }
   }
 
-  /// Which pairs of poses see a common point, and where their blocks are.
+  /// Which pairs of poses see a common point, and where their blocks are; unless they are so many
+  /// that a dense system is solved faster, and not too many for its memory.
   void find_couplings() {
     places_.assign(triangle(poses_.size(), 0), -1);
     for (const PointBlock& block : points_) {
@@ -223,11 +233,19 @@ class SchurSolver {
         if (places_[triangle_of(a, b)] == 0) coupled.emplace_back(a, b);
       }
     }
+    const double share = static_cast<double>(coupled.size()) / static_cast<double>(places_.size());
+    if (share > stage_.max_coupled_share && poses_.size() <= kMostDensePoses) return;
     sparse_.emplace(6, static_cast<int>(poses_.size()), std::move(coupled));
     for (int place = 0; place < sparse_->blocks(); ++place) {
       places_[triangle_of(sparse_->row(place), sparse_->column(place))] = place;
     }
     blocks_.resize(static_cast<std::size_t>(sparse_->blocks()));
+  }
+
+  /// First of the six rows of a slot.
+  template <class Slot>
+  static Eigen::Index at(Slot slot) {
+    return 6 * static_cast<Eigen::Index>(slot);
   }
 
   static std::size_t triangle_of(int a, int b) {
@@ -294,8 +312,8 @@ class SchurSolver {
           damping * poses_[i].hessian.diagonal() + Vector6d::Constant(kTinyDiagonal);
       const std::size_t place = triangle(i, i);
       Block66& block = blocks_[places_.empty() ? place : static_cast<std::size_t>(places_[place])];
-      for (int c = 0; c < 6; ++c) std::copy_n(diagonal.col(c).data(), 6, &block.column[c][0]);
-      pose_step_.segment<6>(static_cast<Eigen::Index>(6 * i)) = -poses_[i].gradient;
+      for (int c = 0; c < 6; ++c) numbers(block.column[c]) = diagonal.col(c);
+      pose_step_.segment<6>(at(i)) = -poses_[i].gradient;
     }
     for (PointBlock& block : points_) {
       if (!factorise(block.hessian, damping, block.root)) return false;
@@ -318,9 +336,9 @@ class SchurSolver {
       s.col(0) = w.col(0) / l(0, 0);
       s.col(1) = (w.col(1) - l(1, 0) * s.col(0)) / l(1, 1);
       s.col(2) = (w.col(2) - l(2, 0) * s.col(0) - l(2, 1) * s.col(1)) / l(2, 2);
-      pose_step_.segment<6>(6 * slot) += s * y;
+      pose_step_.segment<6>(at(slot)) += s * y;
       Block63& scaled = scaled_[static_cast<std::size_t>(i)];
-      for (int c = 0; c < 3; ++c) std::copy_n(s.col(c).data(), 6, &scaled.column[c][0]);
+      for (int c = 0; c < 3; ++c) numbers(scaled.column[c]) = s.col(c);
     }
     simd_kernel<couple>()(link_slots_.data() + block.first, scaled_.data() + block.first,
                           block.last - block.first, places_.empty() ? nullptr : places_.data(),
@@ -332,16 +350,15 @@ class SchurSolver {
       for (int place = 0; place < sparse_->blocks(); ++place) {
         const Block66& block = blocks_[static_cast<std::size_t>(place)];
         SparseBlocks::Block target = sparse_->block(place);
-        for (int c = 0; c < 6; ++c) std::copy_n(&block.column[c][0], 6, target.col(c).data());
+        for (int c = 0; c < 6; ++c) target.col(c) = numbers(block.column[c]);
       }
       return sparse_->solve(pose_step_);
     }
     for (std::size_t a = 0; a < poses_.size(); ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
         const Block66& block = blocks_[triangle(a, b)];
-        for (std::size_t c = 0; c < 6; ++c) {
-          std::copy_n(&block.column[c][0], 6,
-                      reduced_.col(static_cast<Eigen::Index>(6 * b + c)).data() + 6 * a);
+        for (int c = 0; c < 6; ++c) {
+          reduced_.col(at(b) + c).segment<6>(at(a)) = numbers(block.column[c]);
         }
       }
     }
@@ -356,7 +373,7 @@ class SchurSolver {
     trial_ = state_;
     double predicted = 0.0;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const Vector6d step = pose_step_.segment<6>(static_cast<Eigen::Index>(6 * i));
+      const Vector6d step = pose_step_.segment<6>(at(i));
       const PoseBlock& block = poses_[i];
       predicted +=
           damping * step.cwiseAbs2().dot(block.hessian.diagonal()) - step.dot(block.gradient);
@@ -379,8 +396,7 @@ class SchurSolver {
       if (slot < 0) continue;
       const Block63& scaled = scaled_[static_cast<std::size_t>(k)];
       for (int c = 0; c < 3; ++c) {
-        y(c) -=
-            Eigen::Map<const Vector6d>(&scaled.column[c][0]).dot(pose_step_.segment<6>(6 * slot));
+        y(c) -= numbers(scaled.column[c]).dot(pose_step_.segment<6>(at(slot)));
       }
     }
     const Eigen::Matrix3d& l = block.root;

@@ -12,8 +12,8 @@ namespace dxslam {
 namespace {
 
 TEST(SparseBlocks, SolvesWhatADenseMatrixSolves) {
-  constexpr int kWidth = 3;
-  constexpr int kSize = 6;
+  constexpr Eigen::Index kWidth = 3;
+  constexpr Eigen::Index kSize = 6;
   SampleSource source(1);
   SparseBlocks blocks(kWidth, kSize, {{5, 0}, {2, 1}, {3, 1}, {5, 4}, {2, 1}, {4, 0}});
   EXPECT_EQ(blocks.blocks(), kSize + 5);
@@ -32,7 +32,7 @@ TEST(SparseBlocks, SolvesWhatADenseMatrixSolves) {
       dense.block<3, 3>(kWidth * column, kWidth * row) = block.transpose();
     }
     Eigen::VectorXd right(kWidth * kSize);
-    for (int k = 0; k < kSize; ++k) right.segment<3>(3 * k) = source.vector(1.0);
+    for (Eigen::Index k = 0; k < kSize; ++k) right.segment<3>(3 * k) = source.vector(1.0);
     Eigen::VectorXd x = right;
     ASSERT_TRUE(blocks.solve(x));
     EXPECT_LT((dense * x - right).norm(), 1e-12);
