@@ -1,7 +1,16 @@
 # Every third-party package, found once. docs/dependencies.md says why each is here.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d calib3d)
+find_package(PNG 1.6 REQUIRED)
+find_package(JPEG REQUIRED)
+# Debian's package for CMake names files of another package and says so at length.
+find_path(OPENEXR_INCLUDE ImfInputFile.h PATH_SUFFIXES OpenEXR REQUIRED)
+find_path(IMATH_INCLUDE ImathBox.h PATH_SUFFIXES Imath REQUIRED)
+find_library(OPENEXR_LIBRARY OpenEXR REQUIRED)
+add_library(dxslam_openexr INTERFACE)
+target_include_directories(dxslam_openexr SYSTEM INTERFACE ${OPENEXR_INCLUDE} ${IMATH_INCLUDE})
+target_link_libraries(dxslam_openexr INTERFACE ${OPENEXR_LIBRARY})
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)

@@ -22,6 +22,7 @@ TIMEOUT = 300
 
 # Report: (regular expressions found in its output, regular expressions not found in it).
 EXPECTED = {
+    "11-jpeg-with-trailer-refused": (["exit 0"], ["truncated", "none of"]),
 }
 
 # A crash, an internal error, or a death by a signal (128 + its number).

@@ -41,13 +41,10 @@ Part parse_part(const std::string& source) {
 }
 
 bool is_photo(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const std::string name = path.filename().string();
   const bool of_recording =
       name.find(".color.") != std::string::npos || name.find(".depth.") != std::string::npos;
-  return (extension == ".jpg" || extension == ".jpeg" || extension == ".png") && !of_recording;
+  return has_image_ending(path) && !of_recording;
 }
 
 // Images that lie directly in a folder; recordings keep theirs in folders below it.

@@ -3,8 +3,9 @@
 #include "apps/thumbnails.h"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "io/primitives/image_file.h"
 
 namespace dxslam::apps {
 namespace {
@@ -22,12 +23,6 @@ cv::Mat small_grey(const cv::Mat& image) {
   return small;
 }
 
-std::string jpeg_of(const cv::Mat& grey) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", grey, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
-  return {bytes.begin(), bytes.end()};
-}
-
 }  // namespace
 
 void Thumbnails::offer(const RgbdImage& image) {
@@ -42,7 +37,7 @@ void Thumbnails::note(const TrackedFrame& frame) {
   // Those before it were dropped.
   while (!waiting_.empty() && waiting_.front().index < frame.index) waiting_.pop_front();
   if (waiting_.empty() || waiting_.front().index != frame.index) return;
-  if (frame.is_keyframe) taken_[frame.index] = jpeg_of(waiting_.front().grey);
+  if (frame.is_keyframe) taken_[frame.index] = encode_jpeg(waiting_.front().grey, kQuality);
   waiting_.pop_front();
 }
 

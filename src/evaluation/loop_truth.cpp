@@ -89,11 +89,10 @@ LoopTruth from_text(const std::string& path) {
 }
 
 bool looks_like_image(const std::string& path) {
-  char start[3] = {};
+  char start[16] = {};
   std::ifstream file(path, std::ios::binary);
-  if (!file.read(start, sizeof(start))) return false;
-  const std::string_view bytes(start, sizeof(start));
-  return bytes == "\x89PN" || bytes == "\xFF\xD8\xFF";
+  file.read(start, sizeof(start));
+  return begins_as_image({start, static_cast<std::size_t>(file.gcount())});
 }
 
 bool has_loop(const LoopTruth& truth) {

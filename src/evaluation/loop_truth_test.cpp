@@ -137,13 +137,22 @@ TEST(LoopTruth, IsTheSameInBothOrders) {
   EXPECT_THROW(truth.at(0, 4), ContractError);
 }
 
+// A BMP of one bit a pixel, as MATLAB writes masks; rows of four bytes from the bottom up.
+std::string black_and_white_bmp() {
+  std::string bytes = "BM" + word(74) + word(0) + word(62) + word(40) + word(3) + word(3);
+  bytes += word(1 | 1 << 16);  // one plane, one bit
+  for (const std::uint32_t value : {0U, 12U, 0U, 0U, 2U, 0U, 0U, 0xFFFFFFU}) bytes += word(value);
+  return bytes + word(0x80) + word(0) + word(0);
+}
+
 TEST(LoopTruth, ReadsMatFilesTextAndImagesAlike) {
   const TestFolder folder;
   cv::Mat picture(3, 3, CV_8UC1, cv::Scalar(0));
   picture.at<std::uint8_t>(2, 0) = 255;
   for (const std::string& path :
        {folder.write("truth.mat", header() + dense_matrix()),
-        folder.write("truth.txt", "0 0 0\n0,1,0\n1\t0 0\n"), folder.write("truth.png", picture)}) {
+        folder.write("truth.txt", "0 0 0\n0,1,0\n1\t0 0\n"), folder.write("truth.png", picture),
+        folder.write("truth.bmp", black_and_white_bmp())}) {
     const LoopTruth truth = read_loop_truth(path);
     ASSERT_EQ(truth.frames(), 3U) << path;
     EXPECT_EQ(truth.at(0, 2), PairTruth::kSame) << path;

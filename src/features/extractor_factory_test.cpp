@@ -7,12 +7,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
 #include "features/data_directory.h"
 #include "features/network/test_models.h"
+#include "io/primitives/image_file.h"
 #include "matching/descriptor_matching.h"
 
 namespace dxslam {
@@ -192,8 +192,8 @@ TEST_P(RealNetwork, IsRepeatableAndMatchesTwoViews) {
     GTEST_SKIP() << "the model of " << name << " is not at hand (DXSLAM_SHARED)";
   }
   if (!std::filesystem::exists(frame(10))) GTEST_SKIP() << frame(10) << " is not at hand";
-  cv::Mat first = cv::imread(frame(10));
-  cv::Mat second = cv::imread(frame(20));
+  cv::Mat first = read_color_image(frame(10));
+  cv::Mat second = read_color_image(frame(20));
   if (name.rfind("alike", 0) == 0) {  // slow at full size
     first = first(cv::Rect(160, 112, 320, 256)).clone();
     second = second(cv::Rect(160, 112, 320, 256)).clone();

@@ -6,15 +6,16 @@
 
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "io/calibration/calibration.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/image_file.h"
 #include "io/primitives/json_text.h"
 
 namespace dxslam {
@@ -63,16 +64,17 @@ void prepare_folder(const fs::path& folder, bool overwrite) {
   }
 }
 
-void write_image(const fs::path& file, const cv::Mat& image, const std::vector<int>& parameters) {
-  bool written = false;
-  try {
-    written = cv::imwrite(file.string(), image, parameters);
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (!written)
+// Not atomically: flushing thousands of images to the disk takes minutes, and the lists that name
+// them are written last.
+void write_image(const fs::path& path, const cv::Mat& image) {
+  const std::string bytes = encode_image(path.string(), image);
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) {
     throw InputError(
-        fmt::format("cannot write image '{}' (full disk or no permission?)", file.string()));
+        fmt::format("cannot write image '{}' (full disk or no permission?)", path.string()));
+  }
 }
 
 std::string list_of(const SyntheticSequence& sequence, const std::string& folder,
@@ -88,11 +90,10 @@ std::string list_of(const SyntheticSequence& sequence, const std::string& folder
 void write_frame(const RgbdImage& image, const fs::path& folder, double depth_factor,
                  const std::string& type) {
   const std::string stem = fmt::format("{:.6f}", image.stamp);
-  write_image(folder / "rgb" / (stem + "." + type), image.color,
-              {cv::IMWRITE_JPEG_QUALITY, 95, cv::IMWRITE_PNG_COMPRESSION, 1});
+  write_image(folder / "rgb" / (stem + "." + type), image.color);
   cv::Mat raw;
   image.depth.convertTo(raw, CV_16UC1, depth_factor);
-  write_image(folder / "depth" / (stem + ".png"), raw, {cv::IMWRITE_PNG_COMPRESSION, 1});
+  write_image(folder / "depth" / (stem + ".png"), raw);
 }
 
 }  // namespace

@@ -119,7 +119,8 @@ cv::Mat read_image(const std::string& path, double gain) {
 void add_extract_command(CLI::App& app) {
   auto arguments = std::make_shared<ExtractArguments>();
   CLI::App* command = app.add_subcommand("features", "extract features of images");
-  command->add_option("images", arguments->images, "PNG or JPEG files")->required();
+  command->add_option("images", arguments->images, "image files: PNG, JPEG, BMP, PGM, PPM or TIFF")
+      ->required();
   command->add_option("--npz", arguments->npz,
                       "folder for one NumPy archive an image: keypoints N x 2 (pixels), scores N, "
                       "descriptors N x D, global G");

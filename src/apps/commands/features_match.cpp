@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -13,6 +12,8 @@
 #include "apps/features_arguments.h"
 #include "apps/usage.h"
 #include "core/error.h"
+#include "io/primitives/atomic_file.h"
+#include "io/primitives/image_file.h"
 #include "matching/descriptor_matching.h"
 
 namespace dxslam::apps {
@@ -91,21 +92,6 @@ cv::Mat draw(const cv::Mat& first, const cv::Mat& second, const Features& a, con
   return canvas;
 }
 
-void write_picture(const std::string& path, const cv::Mat& picture) {
-  bool written = false;
-  try {
-    written = cv::imwrite(path, picture);
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (!written) {
-    throw InputError(
-        fmt::format("{}: cannot be written, expected a .png or .jpg file in a folder "
-                    "that exists",
-                    path));
-  }
-}
-
 void match(const MatchArguments& arguments) {
   const auto extractor = make_extractor(arguments.extractor);
   const cv::Mat first = read_image(arguments.first, 0.0);
@@ -119,7 +105,8 @@ void match(const MatchArguments& arguments) {
   print("{}: {} and {} keypoints, {} mutual nearest neighbours, {} agree with a homography\n",
         extractor->name(), a.size(), b.size(), matches.size(), inliers);
   if (!arguments.picture.empty()) {
-    write_picture(arguments.picture, draw(first, second, a, b, matches, inlier));
+    const cv::Mat picture = draw(first, second, a, b, matches, inlier);
+    write_file_atomically(arguments.picture, encode_image(arguments.picture, picture));
   }
 }
 
@@ -128,8 +115,8 @@ void match(const MatchArguments& arguments) {
 void add_match_command(CLI::App& app) {
   auto arguments = std::make_shared<MatchArguments>();
   CLI::App* command = app.add_subcommand("match", "match the features of two images");
-  command->add_option("first", arguments->first, "PNG or JPEG file")->required();
-  command->add_option("second", arguments->second, "PNG or JPEG file")->required();
+  command->add_option("first", arguments->first, "image file")->required();
+  command->add_option("second", arguments->second, "image file")->required();
   command->add_option("--out", arguments->picture, "picture of the matches to write");
   command
       ->add_option("--threshold", arguments->threshold,

@@ -3,147 +3,127 @@
 #include "io/primitives/image_file.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
-#include <cstdint>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-#include <optional>
-#include <string_view>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <new>
 
 #include "core/error.h"
+#include "io/image_codecs/image_codec.h"
+#include "io/primitives/limits.h"
 #include "io/primitives/text_file.h"
 
 namespace dxslam {
 namespace {
 
-constexpr std::string_view kPngSignature("\x89PNG\r\n\x1a\n", 8);
-constexpr std::string_view kJpegSignature("\xFF\xD8\xFF", 3);
-constexpr std::uint32_t kLargestSide = 16384;         // pixels
-constexpr std::uint64_t kLargestArea = 64ULL << 20U;  // pixels
-
-std::uint32_t big_endian(std::string_view bytes, std::size_t at, std::size_t count) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
-  }
-  return value;
-}
+constexpr const ImageCodec* kCodecs[] = {&kPngCodec, &kJpegCodec, &kBmpCodec,
+                                         &kPnmCodec, &kTiffCodec, &kExrCodec};
+constexpr const char* kExpected = "a PNG, JPEG, BMP, PGM, PPM, TIFF or EXR image";
+constexpr int kQuality = 95;
+constexpr int kFast = 1;             // zlib's level
+constexpr float kFarthest = 1.0e5F;  // metres; renderers write more where there is nothing
 
 [[noreturn]] void refuse(const std::string& path, const std::string& problem) {
   throw InputError(fmt::format("{}: {}", path, problem));
 }
 
-void check_size(const std::string& path, std::uint32_t width, std::uint32_t height) {
-  const bool fits = width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide &&
-                    std::uint64_t{width} * height <= kLargestArea;
+const ImageCodec* find_codec(std::string_view start) {
+  const auto* const found =
+      std::find_if(std::begin(kCodecs), std::end(kCodecs),
+                   [&](const ImageCodec* codec) { return codec->recognises(start); });
+  return found == std::end(kCodecs) ? nullptr : *found;
+}
+
+void check_size(cv::Size_<std::uint32_t> size, const std::optional<ExpectedSize>& expected) {
+  if (expected && (std::int64_t{size.width} != expected->size.width ||
+                   std::int64_t{size.height} != expected->size.height)) {
+    throw InputError(fmt::format("image of {}x{} pixels, expected {}x{} as {} says", size.width,
+                                 size.height, expected->size.width, expected->size.height,
+                                 expected->source));
+  }
+  const bool fits = size.width >= 1 && size.height >= 1 && size.width <= limits::kImageSide &&
+                    size.height <= limits::kImageSide &&
+                    std::uint64_t{size.width} * size.height <= limits::kImageArea;
   if (fits) return;
-  refuse(path, fmt::format("image of {}x{} pixels, expected 1 to {} a side and at most {} in all",
-                           width, height, kLargestSide, kLargestArea));
+  throw InputError(
+      fmt::format("image of {}x{} pixels, expected 1 to {} a side and at most {} in all",
+                  size.width, size.height, limits::kImageSide, limits::kImageArea));
 }
 
-// Walks the chunks: length, type, data, checksum. Decoders silently fill up truncated images or
-// print to stderr, so the file has to be known to be whole before one sees it.
-void check_png(const std::string& path, std::string_view bytes) {
-  std::size_t at = kPngSignature.size();
-  for (bool first = true;; first = false) {
-    if (bytes.size() - at < 12) refuse(path, "truncated PNG, expected an IEND chunk at its end");
-    const std::size_t length = big_endian(bytes, at, 4);
-    const std::string_view type = bytes.substr(at + 4, 4);
-    if (length > bytes.size() - at - 12) {
-      refuse(path, fmt::format("truncated PNG, {} bytes are missing at its end",
-                               length - (bytes.size() - at - 12)));
-    }
-    const auto* data = reinterpret_cast<const Bytef*>(bytes.data() + at + 4);
-    if (crc32(0, data, static_cast<uInt>(length + 4)) != big_endian(bytes, at + 8 + length, 4)) {
-      refuse(path, fmt::format("damaged PNG, wrong checksum of chunk {}", in_quotes(type)));
-    }
-    if (first && (type != "IHDR" || length != 13)) refuse(path, "damaged PNG, no IHDR chunk first");
-    if (first) check_size(path, big_endian(bytes, at + 8, 4), big_endian(bytes, at + 12, 4));
-    if (type == "IEND") return;
-    at += length + 12;
+cv::Mat decode(const std::string& path, const std::optional<ExpectedSize>& expected) {
+  const std::string bytes = read_file(path, kExpected, limits::kFileBytes);
+  if (bytes.empty()) refuse(path, fmt::format("empty file, expected {}", kExpected));
+  const std::string_view start = std::string_view(bytes).substr(0, 16);
+  const ImageCodec* codec = find_codec(start);
+  if (codec == nullptr) {
+    refuse(path,
+           fmt::format("begins with {}, expected {}", in_quotes(start.substr(0, 8)), kExpected));
   }
-}
-
-// Size from the frame header; segments are FF, marker, 16-bit length.
-void check_jpeg(const std::string& path, std::string_view bytes) {
-  std::string_view content = bytes;
-  while (!content.empty() && content.back() == '\0') content.remove_suffix(1);
-  if (content.substr(content.size() - 2) != "\xFF\xD9") {
-    refuse(path, "truncated JPEG, expected the end marker FFD9 at its end");
-  }
-  std::size_t at = 2;
-  while (at + 9 <= bytes.size()) {
-    if (bytes[at] != '\xFF') refuse(path, fmt::format("damaged JPEG, no marker at byte {}", at));
-    const std::uint32_t marker = big_endian(bytes, at + 1, 1);
-    if (marker == 0xFF) {  // fill byte
-      ++at;
-      continue;
-    }
-    const bool frame =
-        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (frame) {
-      check_size(path, big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2));
-      return;
-    }
-    if (marker == 0xDA || marker == 0xD9) break;
-    at += 2 + big_endian(bytes, at + 2, 2);
-  }
-  refuse(path, "damaged JPEG, no frame header");
-}
-
-// OpenCV's log level is one global; it is silenced only while a decoder runs.
-class QuietOpenCv {
- public:
-  QuietOpenCv() : level_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~QuietOpenCv() { cv::utils::logging::setLogLevel(level_); }
-  QuietOpenCv(const QuietOpenCv&) = delete;
-  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
-
- private:
-  cv::utils::logging::LogLevel level_;
-};
-
-cv::Mat decode(const std::string& path) {
-  std::string bytes = read_file(path, "a PNG or JPEG image");
-  const std::string_view view = bytes;
-  if (bytes.empty()) refuse(path, "empty file, expected a PNG or JPEG image");
-  if (view.substr(0, kPngSignature.size()) == kPngSignature) {
-    check_png(path, view);
-  } else if (view.substr(0, kJpegSignature.size()) == kJpegSignature) {
-    check_jpeg(path, view);
-  } else {
-    refuse(path, fmt::format("begins with {}, expected a PNG or JPEG image",
-                             in_quotes(view.substr(0, 8))));
-  }
-  cv::Mat image;
   try {
-    const QuietOpenCv quiet;
-    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data());
-    image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
-    image.release();
+    check_size(codec->inspect(bytes), expected);
+    return codec->decode(bytes);
+  } catch (const InputError& e) {
+    refuse(path, e.what());
+  } catch (const cv::Exception&) {  // thrown where memory is short
+    refuse(path, "image too large for the memory there is");
+  } catch (const std::bad_alloc&) {
+    refuse(path, "image too large for the memory there is");
   }
-  if (image.empty()) refuse(path, "damaged image, its pixels cannot be decoded");
-  return image;
+}
+
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
 }
 
 }  // namespace
 
-cv::Mat read_color_image(const std::string& path) {
-  cv::Mat image = decode(path);
-  if (image.type() == CV_8UC4) cv::cvtColor(image, image, cv::COLOR_BGRA2BGR);
+cv::Mat read_color_image(const std::string& path, const std::optional<ExpectedSize>& expected) {
+  cv::Mat image = decode(path, expected);
   if (image.type() == CV_8UC3 || image.type() == CV_8UC1) return image;
-  refuse(path, fmt::format("{}-bit image of {} channels, expected 8-bit colour or grey",
+  if (image.type() == CV_16UC3) {
+    cv::Mat narrow;
+    image.convertTo(narrow, CV_8U, 1.0 / 257.0);  // 65535 becomes 255
+    return narrow;
+  }
+  refuse(path, fmt::format("{}-bit image of {} channels, expected 8-bit colour or grey, or 16-bit "
+                           "colour",
                            8 * image.elemSize1(), image.channels()));
 }
 
-cv::Mat read_depth_image(const std::string& path) {
-  cv::Mat image = decode(path);
+cv::Mat read_depth_image(const std::string& path, const std::optional<ExpectedSize>& expected) {
+  cv::Mat image = decode(path, expected);
   if (image.type() == CV_16UC1) return image;
-  refuse(path, fmt::format("{}-bit image of {} channels, expected 16-bit depth of one channel",
+  if (image.type() == CV_32FC1) {
+    for (int y = 0; y < image.rows; ++y) {
+      float* row = image.ptr<float>(y);
+      std::replace_if(
+          row, row + image.cols,
+          [](float metres) { return !(metres > 0.0F && metres < kFarthest); }, 0.0F);
+    }
+    return image;
+  }
+  refuse(path, fmt::format("{}-bit image of {} channels, expected depth of one channel, 16-bit or "
+                           "32-bit float",
                            8 * image.elemSize1(), image.channels()));
 }
+
+std::string encode_image(const std::string& path, const cv::Mat& image) {
+  const std::string ending = ending_of(path);
+  if (ending == ".png") return encode_png(image, kFast);
+  if (ending == ".jpg" || ending == ".jpeg") return encode_jpeg(image, kQuality);
+  refuse(path, "no kind of image that can be written, expected a name that ends in .png or .jpg");
+}
+
+bool has_image_ending(const std::filesystem::path& path) {
+  static constexpr std::array<std::string_view, 8> kEndings = {".png", ".jpg", ".jpeg", ".bmp",
+                                                               ".pgm", ".ppm", ".tif",  ".tiff"};
+  return std::find(kEndings.begin(), kEndings.end(), ending_of(path)) != kEndings.end();
+}
+
+bool begins_as_image(std::string_view start) { return find_codec(start) != nullptr; }
 
 }  // namespace dxslam

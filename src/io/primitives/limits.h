@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 /// The most that one input may hold: one limit per kind, far above what real data need, so that a
 /// broken or hostile file costs seconds and not the machine. docs/file_formats.md lists them.
@@ -20,6 +21,14 @@ inline constexpr std::size_t kSmallTextBytes = std::size_t{1} << 20;
 inline constexpr std::size_t kFrames = 2'000'000;
 /// Poses of one trajectory: 13 hours at 200 Hz.
 inline constexpr std::size_t kPoses = 10'000'000;
+
+/// An image, whose size is looked at before anything is decoded.
+inline constexpr std::uint32_t kImageSide = 16384;                     ///< pixels
+inline constexpr std::uint64_t kImageArea = std::uint64_t{64} << 20U;  ///< pixels
+/// Scans of a progressive JPEG, each of which costs time for the whole area; usual are 10.
+inline constexpr int kJpegScans = 64;
+/// Memory of a decoder, besides the picture itself.
+inline constexpr std::size_t kDecoderBytes = std::size_t{512} << 20;
 
 /// YAML: configurations, calibrations, manifests. Its largest known here has some 250 entries.
 inline constexpr std::size_t kYamlBytes = std::size_t{1} << 20;

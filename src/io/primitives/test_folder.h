@@ -12,11 +12,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
+#include "io/primitives/image_file.h"
 
 namespace dxslam {
 
@@ -42,9 +42,7 @@ class TestFolder {
     return *this / name;
   }
   std::string write(const std::string& name, const cv::Mat& image) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    cv::imwrite(*this / name, image);
-    return *this / name;
+    return write(name, encode_image(name, image));
   }
   void truncate(const std::string& name, std::uintmax_t bytes) const {
     std::filesystem::resize_file(path_ / name, bytes);

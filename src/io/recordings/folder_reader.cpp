@@ -65,6 +65,15 @@ std::vector<SE3> read_poses(const std::string& path, std::size_t images) {
   return poses;
 }
 
+/// Of the kinds that can hold depth, the one there is; PNG if there is none.
+std::string depth_file(const std::string& folder, const std::string& stem) {
+  const std::string path = in_folder(folder, "depth/" + stem);
+  for (const char* ending : {".png", ".tiff", ".tif", ".exr", ".pgm"}) {
+    if (std::filesystem::exists(path + ending)) return path + ending;
+  }
+  return path + ".png";
+}
+
 }  // namespace
 
 SequenceListing list_folder(const std::string& folder, const SequenceOptions& options) {
@@ -80,9 +89,9 @@ SequenceListing list_folder(const std::string& folder, const SequenceOptions& op
   }
   const bool has_depth = fs::is_directory(in_folder(folder, "depth"));
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const std::string depth = "depth/" + images[i].stem().string() + ".png";
-    listing.frames.push_back({static_cast<double>(i) / listing.camera.fps, images[i].string(),
-                              has_depth ? in_folder(folder, depth) : std::string()});
+    listing.frames.push_back(
+        {static_cast<double>(i) / listing.camera.fps, images[i].string(),
+         has_depth ? depth_file(folder, images[i].stem().string()) : std::string()});
   }
   const std::string poses = in_folder(folder, "poses.txt");
   if (fs::exists(poses)) {

@@ -14,13 +14,6 @@ namespace {
 
 constexpr double kFramesASecond = 10.0;
 
-bool is_image(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
-}
-
 bool all_digits(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
@@ -43,7 +36,7 @@ bool name_less(const std::filesystem::path& a, const std::filesystem::path& b) {
 bool has_images(const std::string& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (is_image(entry.path())) return true;
+    if (has_image_ending(entry.path())) return true;
   }
   return false;
 }
@@ -51,7 +44,7 @@ bool has_images(const std::string& folder) {
 std::vector<std::filesystem::path> list_images(const std::string& folder) {
   std::vector<std::filesystem::path> images;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (is_image(entry.path())) images.push_back(entry.path());
+    if (has_image_ending(entry.path())) images.push_back(entry.path());
   }
   // Numbers first: comparing numbers with other names by letters would be no order.
   const auto other = std::partition(images.begin(), images.end(), [](const auto& path) {
@@ -60,7 +53,8 @@ std::vector<std::filesystem::path> list_images(const std::string& folder) {
   std::sort(images.begin(), other, name_less);
   std::sort(other, images.end(), name_less);
   if (images.empty()) {
-    throw InputError(fmt::format("{}: no image in it, expected PNG or JPEG files", folder));
+    throw InputError(
+        fmt::format("{}: no image in it, expected PNG, JPEG, BMP, PGM, PPM or TIFF files", folder));
   }
   return images;
 }

@@ -79,22 +79,18 @@ class ListedSequence : public RgbdSequence {
     RgbdImage image;
     image.index = static_cast<std::int64_t>(index);
     image.stamp = files.stamp;
-    image.color = read_color_image(files.color);
-    check_size(image.color, files.color);
-    if (files.depth.empty()) return image;
-    cv::Mat raw = read_depth_image(files.depth);
-    check_size(raw, files.depth);
-    if (listing_.register_depth) raw = listing_.register_depth(raw);
-    raw.convertTo(image.depth, CV_32F, 1.0 / listing_.camera.depth_factor);
-    return image;
-  }
-
-  void check_size(const cv::Mat& image, const std::string& file) const {
     const Camera& camera = listing_.camera;
-    if (image.cols == camera.width && image.rows == camera.height) return;
-    throw InputError(fmt::format("{}: image of {}x{} pixels, expected {}x{} as {} says", file,
-                                 image.cols, image.rows, camera.width, camera.height,
-                                 listing_.calibration_source));
+    const ExpectedSize size{{camera.width, camera.height}, listing_.calibration_source};
+    image.color = read_color_image(files.color, size);
+    if (files.depth.empty()) return image;
+    cv::Mat depth = read_depth_image(files.depth, size);
+    if (depth.type() == CV_32FC1 && listing_.register_depth) {  // which works on raw units
+      depth.convertTo(depth, CV_16U, camera.depth_factor);
+    }
+    if (listing_.register_depth) depth = listing_.register_depth(depth);
+    if (depth.type() == CV_16UC1) depth.convertTo(depth, CV_32F, 1.0 / camera.depth_factor);
+    image.depth = depth;
+    return image;
   }
 
   static void collect_depths(const cv::Mat& depth, std::vector<float>& depths) {

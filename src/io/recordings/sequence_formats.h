@@ -22,7 +22,7 @@ SequenceListing list_image_folder(const std::string& folder, const SequenceOptio
 
 /// Whether `folder` holds frames named as those of 7-Scenes.
 bool has_seven_scenes_frames(const std::string& folder);
-/// Whether `folder` holds PNG or JPEG files.
+/// Whether `folder` holds image files.
 bool has_images(const std::string& folder);
 
 // What the readers share.
@@ -44,7 +44,7 @@ void associate_lists(const std::string& folder, const std::string& color_list,
 /// world_from_camera of 16 numbers, row by row. `where` is "FILE:LINE" for messages. Throws unless
 /// the rotation is orthonormal within 1 % and the last row is 0 0 0 1.
 SE3 pose_from_row_major(const double (&values)[16], const std::string& where);
-/// PNG and JPEG files of a folder in the order of their names, numbers by value. Throws InputError
+/// Image files of a folder in the order of their names, numbers by value. Throws InputError
 /// if there is none.
 std::vector<std::filesystem::path> list_images(const std::string& folder);
 /// Size of the first readable one; throws InputError if none of the first ten is.
