@@ -9,7 +9,7 @@
 namespace dxslam {
 namespace {
 
-constexpr std::size_t kMinCompaction = 1024;  // empty slots that are not worth a sweep
+constexpr std::size_t kMinCompaction = 64;  // empty slots that are not worth a sweep
 
 bool ranks_before(const BowMatch& a, const BowMatch& b) {
   return a.score != b.score ? a.score > b.score : a.id < b.id;
