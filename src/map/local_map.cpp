@@ -71,11 +71,9 @@ std::vector<PointId> points_of(const Map& map, const std::vector<KeyframeId>& ke
   return ids;
 }
 
-LocalMapPtr make_local_map(const Map& map, KeyframeId reference, std::uint64_t version,
-                           const LocalMapOptions& options) {
+LocalMapPtr make_local_map(const Map& map, KeyframeId reference, const LocalMapOptions& options) {
   auto local = std::make_shared<LocalMap>();
   const Keyframe& keyframe = map.keyframe(reference);
-  local->version = version;
   local->reference = reference;
   local->component = keyframe.component;
   local->reference_frame = keyframe.frame;

@@ -34,7 +34,6 @@ struct LocalMapOptions {
 /// What tracking needs of the map around one keyframe: a self-contained copy, immutable once made,
 /// handed over as std::shared_ptr<const LocalMap>, so that tracking and mapping share no lock.
 struct LocalMap {
-  std::uint64_t version = 0;  ///< rises with every snapshot
   KeyframeId reference = kNoId;
   std::uint32_t component = 0;  ///< of all that is in here
   FramePtr reference_frame;
@@ -66,7 +65,6 @@ std::vector<KeyframeId> local_keyframes(const Map& map, KeyframeId reference,
 std::vector<PointId> points_of(const Map& map, const std::vector<KeyframeId>& keyframes,
                                std::size_t most);
 
-LocalMapPtr make_local_map(const Map& map, KeyframeId reference, std::uint64_t version,
-                           const LocalMapOptions& options);
+LocalMapPtr make_local_map(const Map& map, KeyframeId reference, const LocalMapOptions& options);
 
 }  // namespace dxslam

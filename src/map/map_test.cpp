@@ -100,7 +100,7 @@ TEST(Map, KeepsTheMemoryOfWhatLivesNotOfWhatEverWas) {
 
 TEST(LocalMap, HoldsThePointsOfCovisibleAndNearbyKeyframes) {
   BuiltMap built(6);
-  const LocalMapPtr local = make_local_map(built.map, 5, 1, LocalMapOptions());
+  const LocalMapPtr local = make_local_map(built.map, 5, LocalMapOptions());
   EXPECT_EQ(local->reference, 5U);
   EXPECT_EQ(local->size(), built.map.point_count());
   EXPECT_EQ(local->descriptors.rows, static_cast<int>(local->size()));
@@ -120,7 +120,7 @@ TEST(LocalMap, RespectsItsLimits) {
   options.keyframes = 1;
   options.nearby_keyframes = 0;
   options.max_points = 150;
-  const LocalMapPtr local = make_local_map(built.map, 5, 1, options);
+  const LocalMapPtr local = make_local_map(built.map, 5, options);
   EXPECT_EQ(local->keyframes.size(), 2U);
   EXPECT_LE(local->size(), 150U);
 }

@@ -45,8 +45,8 @@ void LocalMapper::refine(MappingReport& report) {
   report.culled_keyframes = cull_keyframes(report.keyframe);
 }
 
-LocalMapPtr LocalMapper::local_map_around(KeyframeId keyframe) {
-  return make_local_map(map_, keyframe, ++version_, options_.local_map);
+LocalMapPtr LocalMapper::local_map_around(KeyframeId keyframe) const {
+  return make_local_map(map_, keyframe, options_.local_map);
 }
 
 void LocalMapper::bind_matches(const KeyframeRequest& request, KeyframeId keyframe) {

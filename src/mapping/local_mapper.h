@@ -52,9 +52,9 @@ class LocalMapper {
   void begin_recording();
 
   /// Snapshot around a keyframe.
-  LocalMapPtr local_map_around(KeyframeId keyframe);
+  LocalMapPtr local_map_around(KeyframeId keyframe) const;
   /// Snapshot around the newest keyframe. There must be one.
-  LocalMapPtr local_map() { return local_map_around(map_.last_keyframe()); }
+  LocalMapPtr local_map() const { return local_map_around(map_.last_keyframe()); }
   const Map& map() const { return map_; }
   /// For those who change the map between the calls above, in the same thread: loop closing.
   Map& map() { return map_; }
@@ -85,7 +85,6 @@ class LocalMapper {
   Map map_;
   std::vector<Recent> recent_;
   KeyframeId first_of_recording_ = 0;
-  std::uint64_t version_ = 0;
 };
 
 }  // namespace dxslam

@@ -45,7 +45,7 @@ void RelocalizationConsensus::reset() { agreeing_ = 0; }
 
 bool RelocalizationConsensus::agrees(double stamp, const RelocalizationReport& report) const {
   const double passed = stamp - last_stamp_;
-  if (agreeing_ == 0 || passed < 0.0 || passed > options_.max_gap ||
+  if (agreeing_ == 0 || !(passed > 0.0) || passed > options_.max_gap ||
       report.component != last_.component) {
     return false;
   }

@@ -49,6 +49,14 @@ TEST(RelocalizationConsensus, AJumpStartsANewRow) {
   EXPECT_TRUE(consensus.add(0.4, weak_at(5.2)).has_value());
 }
 
+// The same image again agrees with itself, and says nothing.
+TEST(RelocalizationConsensus, FramesOfAClockThatStandsOrJumpsBackDoNotAgree) {
+  for (const double step : {0.0, -0.1}) {
+    RelocalizationConsensus consensus;
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(consensus.add(1.0 + i * step, weak_at(0.0)));
+  }
+}
+
 TEST(RelocalizationConsensus, ATurnTooFastStartsANewRow) {
   RelocalizationConsensus consensus;
   consensus.add(0.0, weak_at(0.0));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/options.h"
@@ -43,14 +44,7 @@ Tracker::Tracker(const Camera& camera, const DescriptorTraits& traits,
 
 void Tracker::set_local_map(LocalMapPtr local_map) {
   require(local_map != nullptr, "a local map must not be null");
-  if (local_ && last_.frame) {
-    // Mapping may have moved the keyframe that the last pose hangs on: move along.
-    const SE3* moved = local_map->find_pose(local_->reference);
-    if (moved != nullptr) {
-      last_.world_from_camera =
-          *moved * local_->world_from_reference.inverse() * last_.world_from_camera;
-    }
-  }
+  if (local_ && last_.frame) follow(*local_map);
   if (!local_ || local_->reference != local_map->reference) {
     if (last_.frame && is_same_image(*last_.frame, *local_map->reference_frame)) {
       last_.points = local_map->reference_points;
@@ -59,9 +53,33 @@ void Tracker::set_local_map(LocalMapPtr local_map) {
   local_ = std::move(local_map);
 }
 
+// Mapping may have moved the keyframe that the last pose hangs on: move along.
+void Tracker::follow(const LocalMap& next) {
+  const SE3* before = &local_->world_from_reference;
+  const SE3* after = next.find_pose(local_->reference);
+  double nearest = std::numeric_limits<double>::max();
+  const bool culled = after == nullptr;
+  for (std::size_t i = 0; culled && i < local_->keyframes.size(); ++i) {
+    const SE3& pose = local_->keyframe_poses[i];
+    const double distance = translation_distance(pose, last_.world_from_camera);
+    const SE3* still_there = next.find_pose(local_->keyframes[i]);
+    if (still_there == nullptr || distance >= nearest) continue;
+    nearest = distance;
+    before = &pose;
+    after = still_there;
+  }
+  if (after != nullptr) {
+    last_.world_from_camera = *after * before->inverse() * last_.world_from_camera;
+  } else if (next.component != local_->component) {
+    // Where the last frame is in this world is not known; where its reference is, is.
+    last_ = {next.reference_frame, next.world_from_reference, next.reference_points};
+    last_velocity_.reset();
+  }
+}
+
 TrackedFrame Tracker::track(const FramePtr& raw, std::optional<KeyframeRequest>& request) {
   request.reset();
-  ++frames_since_keyframe_;
+  ++since_keyframe_.frames;
   if (!local_) return conclude(raw, start(*raw), request);
   FramePtr frame = straightened(raw, last_velocity_);
   KeypointGrid grid(frame->pixels);
@@ -78,7 +96,8 @@ TrackedFrame Tracker::track(const FramePtr& raw, std::optional<KeyframeRequest>&
 
 FramePtr Tracker::straightened(const FramePtr& raw, const std::optional<Vector6d>& velocity) const {
   if (camera_.readout_time == 0.0 || !velocity) return raw;
-  if (raw->stamp - last_.frame->stamp > kLongestReadoutInterval) return raw;
+  const double interval = raw->stamp - last_.frame->stamp;
+  if (!(interval > 0.0 && interval <= kLongestReadoutInterval)) return raw;
   return without_rolling_shutter(raw, camera_, *velocity);
 }
 
@@ -92,7 +111,9 @@ std::optional<Vector6d> Tracker::velocity_at(const Frame& frame,
 
 SE3 Tracker::predict(double stamp) const {
   const double ahead = stamp - last_.frame->stamp;
-  if (!last_velocity_ || ahead > kLongestPrediction) return last_.world_from_camera;
+  if (!last_velocity_ || !(ahead > 0.0 && ahead <= kLongestPrediction)) {
+    return last_.world_from_camera;
+  }
   return last_.world_from_camera * SE3::exp(ahead * *last_velocity_);
 }
 
@@ -125,16 +146,15 @@ void Tracker::restart() {
   last_ = {};
   last_velocity_.reset();
   quick_pause_ = 0;
-  counts_.clear();
-  frames_since_keyframe_ = 0;
-  best_tracked_points_ = 0;
+  since_keyframe_ = {};
 }
 
 TrackedFrame Tracker::conclude(const FramePtr& frame, const OptionalEstimate& estimate,
                                std::optional<KeyframeRequest>& request) {
   if (estimate) {
     state_ = TrackingState::kTracking;
-    best_tracked_points_ = std::max(best_tracked_points_, estimate->map_points);
+    int& best = since_keyframe_.best_tracked_points;
+    best = std::max(best, estimate->map_points);
   }
   if (!estimate && local_) state_ = TrackingState::kLost;
   TrackedFrame result = report(frame, estimate);
@@ -350,9 +370,9 @@ Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const Key
     known.push_back({m.b, local_->ids[i], local_->positions[i]});
     taken[static_cast<std::size_t>(m.b)] = 1;
   }
-  for (const KnownPoint& k : known) ++counts_[k.id].visible;
+  for (const KnownPoint& k : known) ++since_keyframe_.counts[k.id].visible;
   for (const PixelPrediction& p : predictions) {
-    ++counts_[local_->ids[static_cast<std::size_t>(p.descriptor_row)]].visible;
+    ++since_keyframe_.counts[local_->ids[static_cast<std::size_t>(p.descriptor_row)]].visible;
   }
   if (static_cast<int>(known.size()) < options_.temporary_points_below) {
     for (const KnownPoint& k : temporary) {
@@ -363,15 +383,16 @@ Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const Key
   if (!refined) return std::nullopt;
   refined->recovered = estimate.recovered;
   for (const KnownPoint& k : refined->known) {
-    if (k.id != kNoId) ++counts_[k.id].found;
+    if (k.id != kNoId) ++since_keyframe_.counts[k.id].found;
   }
   return refined;
 }
 
 bool Tracker::needs_keyframe(const Frame& frame, const Estimate& estimate) const {
-  return is_keyframe_due({frames_since_keyframe_, estimate.map_points, best_tracked_points_,
-                          local_->world_from_reference.inverse() * estimate.world_from_camera},
-                         frame, options_.keyframe);
+  return is_keyframe_due(
+      {since_keyframe_.frames, estimate.map_points, since_keyframe_.best_tracked_points,
+       local_->world_from_reference.inverse() * estimate.world_from_camera},
+      frame, options_.keyframe);
 }
 
 std::vector<PointId> Tracker::points_by_keypoint(const Frame& frame,
@@ -390,12 +411,11 @@ KeyframeRequest Tracker::make_request(const FramePtr& frame, const Estimate& est
         local_->world_from_reference.inverse() * estimate.world_from_camera;
   }
   request.points = points_by_keypoint(*frame, estimate);
-  for (auto& [id, count] : counts_) request.counts.push_back({id, count.visible, count.found});
+  handed_over_ = std::exchange(since_keyframe_, {});
+  for (const auto& [id, count] : handed_over_.counts)
+    request.counts.push_back({id, count.visible, count.found});
   std::sort(request.counts.begin(), request.counts.end(),
             [](const PointCount& a, const PointCount& b) { return a.point < b.point; });
-  counts_.clear();
-  frames_since_keyframe_ = 0;
-  best_tracked_points_ = 0;
   return request;
 }
 

@@ -23,7 +23,8 @@ class Tracker {
  public:
   Tracker(const Camera& camera, const DescriptorTraits& traits, const TrackerOptions& options);
 
-  /// The newest snapshot; poses follow the keyframe they hang on.
+  /// The newest snapshot; poses follow the keyframe they hang on, or the nearest that is still
+  /// there.
   void set_local_map(LocalMapPtr local_map);
   bool has_local_map() const { return local_ != nullptr; }
 
@@ -35,6 +36,8 @@ class Tracker {
   /// does not bear it out.
   TrackedFrame resume(const FramePtr& frame, LocalMapPtr local_map, const SE3& world_from_camera,
                       const std::vector<PointId>& points, std::optional<KeyframeRequest>& request);
+  /// The request of the frame tracked last was not served: what spoke for it counts on.
+  void take_back_request() { since_keyframe_ = std::move(handed_over_); }
   /// Forgets the local map and all motion: the next usable frame starts a new one.
   void restart();
 
@@ -48,12 +51,21 @@ class Tracker {
   };
   using OptionalEstimate = std::optional<Estimate>;
 
+  /// What is gathered from one request for a keyframe to the next.
+  struct SinceKeyframe {
+    std::unordered_map<PointId, PointCount> counts;
+    int frames = 0;
+    int best_tracked_points = 0;
+  };
+
+  void follow(const LocalMap& next);
   OptionalEstimate start(const Frame& frame) const;
   /// The frame without the camera's rolling shutter, as far as `velocity` is known.
   FramePtr straightened(const FramePtr& raw, const std::optional<Vector6d>& velocity) const;
   /// Mean motion a second since the last frame with a pose.
   std::optional<Vector6d> velocity_at(const Frame& frame, const SE3& world_from_camera) const;
-  /// Where constant velocity takes the camera by `stamp`, however many frames lie between.
+  /// Where constant velocity takes the camera by `stamp`, however many frames lie between. Where
+  /// the last frame was, if the clock did not go on.
   SE3 predict(double stamp) const;
   OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid);
   /// By the strongest keypoints first, then all around the pixels where these put them. Not tried
@@ -94,10 +106,9 @@ class Tracker {
   TrackingState state_ = TrackingState::kNotStarted;
   LastFrame last_;
   std::optional<Vector6d> last_velocity_;  // a second, in the last camera's frame
-  std::unordered_map<PointId, PointCount> counts_;
-  int quick_pause_ = 0;  // frames for which track_quickly is not tried
-  int frames_since_keyframe_ = 0;
-  int best_tracked_points_ = 0;  // since the last keyframe
+  int quick_pause_ = 0;                    // frames for which track_quickly is not tried
+  SinceKeyframe since_keyframe_;
+  SinceKeyframe handed_over_;  // as it was before the last request
 };
 
 }  // namespace dxslam

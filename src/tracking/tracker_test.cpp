@@ -22,7 +22,7 @@ void start_map(Map& map, const FramePtr& frame, const Camera& camera, Tracker& t
     map.add_point(camera.unproject(frame->pixels[i].cast<double>(), frame->depths[i]), id,
                   static_cast<std::uint32_t>(i));
   }
-  tracker.set_local_map(make_local_map(map, id, 1, LocalMapOptions()));
+  tracker.set_local_map(make_local_map(map, id, LocalMapOptions()));
 }
 
 // A tracker with a map of one keyframe at the origin in which all keypoints with depth are points.
@@ -110,13 +110,79 @@ TEST_F(TrackerTest, PosesFollowTheKeyframeWhenMappingMovesIt) {
   const SE3 shift(Eigen::Quaterniond::Identity(), Eigen::Vector3d(5.0, 0.0, 0.0));
   for (const PointId id : map_.point_ids()) map_.set_position(id, shift * map_.point(id).position);
   map_.set_pose(0, shift);
-  tracker_.set_local_map(make_local_map(map_, 0, 2, LocalMapOptions()));
+  tracker_.set_local_map(make_local_map(map_, 0, LocalMapOptions()));
   const SE3 truth = PointScene::pose(0.02);
   const TrackedFrame tracked = tracker_.track(scene_.frame(2, truth), request_);
   ASSERT_EQ(tracked.state, TrackingState::kTracking);
   EXPECT_FALSE(tracked.recovered);
   EXPECT_LT(translation_distance(tracked.world_from_camera, shift * truth), 0.01);
   EXPECT_LT(translation_distance(tracked.reference_from_camera, truth), 0.01);
+}
+
+// The reference was culled while its component was joined to another.
+TEST_F(TrackerTest, FollowsIntoAnotherWorldWithoutItsReference) {
+  start();
+  tracker_.track(scene_.frame(1, PointScene::pose(0.01)), request_);
+  const SE3 shift(so3_exp({0.0, 0.5, 0.0}), Eigen::Vector3d(5.0, 0.0, 0.0));
+  Map joined;
+  joined.add_keyframe(scene_.frame(7, SE3()), SE3(), kNoId);  // the id that the reference had
+  const FramePtr frame = scene_.frame(0, SE3());
+  const KeyframeId id = joined.add_keyframe(frame, shift, kNoId);
+  for (std::size_t i = 0; i < frame->size(); ++i) {
+    if (!frame->has_depth(i)) continue;
+    joined.add_point(
+        shift * scene_.camera().unproject(frame->pixels[i].cast<double>(), frame->depths[i]), id,
+        static_cast<std::uint32_t>(i));
+  }
+  tracker_.set_local_map(make_local_map(joined, id, LocalMapOptions()));
+  for (int i = 2; i < 5; ++i) {
+    const SE3 truth = PointScene::pose(0.01 * i);
+    const TrackedFrame tracked = tracker_.track(scene_.frame(i, truth), request_);
+    ASSERT_EQ(tracked.state, TrackingState::kTracking);
+    EXPECT_EQ(tracked.component, 1U);
+    EXPECT_LT(translation_distance(tracked.world_from_camera, shift * truth), 0.01);
+  }
+}
+
+FramePtr at(double stamp, const FramePtr& frame) {
+  auto copy = std::make_shared<Frame>(*frame);
+  copy->stamp = stamp;
+  return copy;
+}
+
+TEST_F(TrackerTest, AClockThatJumpsBackIsNotExtrapolated) {
+  start();
+  for (int i = 1; i <= 5; ++i)
+    tracker_.track(scene_.frame(i, PointScene::pose(0.01 * i)), request_);
+  // Half a second back, or the same stamp again: the camera itself has gone on.
+  for (const double stamp : {5.0 / 30.0 - 0.5, 5.0 / 30.0 - 0.5, 6.0 / 30.0}) {
+    const SE3 truth = PointScene::pose(0.06);
+    const TrackedFrame tracked = tracker_.track(at(stamp, scene_.frame(6, truth)), request_);
+    ASSERT_EQ(tracked.state, TrackingState::kTracking);
+    EXPECT_FALSE(tracked.recovered) << stamp;
+    EXPECT_LT(translation_distance(tracked.world_from_camera, truth), 0.01) << stamp;
+  }
+}
+
+// What spoke for a keyframe goes with the request; one that nobody takes must not be the end of it.
+TEST_F(TrackerTest, ARequestTakenBackLosesNothing) {
+  start();
+  for (int i = 1; i <= 3; ++i) tracker_.track(scene_.frame(i, SE3()), request_);
+  const FramePtr far = scene_.frame(4, PointScene::pose(0.2));
+  tracker_.track(far, request_);
+  ASSERT_TRUE(request_.has_value());
+  const std::vector<PointCount> counts = request_->counts;
+  tracker_.take_back_request();
+  tracker_.track(scene_.frame(5, PointScene::pose(0.2)), request_);
+  ASSERT_TRUE(request_.has_value());
+  std::size_t more = 0;
+  for (const PointCount& before : counts) {
+    for (const PointCount& now : request_->counts) {
+      if (now.point == before.point && now.visible > before.visible) ++more;
+    }
+  }
+  EXPECT_GT(more, 50U);
+  EXPECT_GE(request_->counts.size(), counts.size());
 }
 
 TEST_F(TrackerTest, ACameraAtRestMakesNoKeyframes) {
