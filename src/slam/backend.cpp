@@ -124,11 +124,6 @@ LocalMapPtr Backend::follow(const KeyframeRequest& request) {
   return mapper_.local_map_around(best);
 }
 
-void Backend::begin_recording() {
-  mapper_.begin_recording();
-  consensus_.reset();
-}
-
 RelocalizationAnswer Backend::relocalize(const Frame& frame) {
   Frame asking = frame;
   asking.global = global_of(frame);

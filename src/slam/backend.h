@@ -24,7 +24,7 @@ struct RelocalizationAnswer {
 };
 
 /// Everything that changes or searches the map: local mapping, loop closing and relocalization
-/// (paper, Fig. 1). Owns the map; belongs to one thread.
+/// (paper, Fig. 1). Owns the map; one thread at a time, unless said otherwise.
 class Backend {
  public:
   /// `extractor` makes global descriptors of frames extracted before; it must outlive this.
@@ -45,8 +45,11 @@ class Backend {
   LocalMapPtr follow(const KeyframeRequest& request);
   /// By the frame alone, or by weak poses of frames in a row that agree.
   RelocalizationAnswer relocalize(const Frame& frame);
-  /// What comes from now on is of another recording.
-  void begin_recording();
+  /// The keyframes from now on are of another recording.
+  void begin_recording() { mapper_.begin_recording(); }
+  /// The frames from now on say where they are anew: forgets weak poses of those before. In the
+  /// thread of relocalize().
+  void forget_seen() { consensus_.reset(); }
 
   /// Ends what runs in the background and, if so configured, adjusts the whole map once more; a map
   /// that was only localized in stays as it is.

@@ -26,10 +26,11 @@ class BoundedQueue {
     changed_.notify_all();
     return true;
   }
-  /// Whether push() would not wait; with a single producer this stays true until its next push.
+  /// Whether push() would take an item at once; with a single producer this stays true until its
+  /// next push, unless the queue is closed meanwhile.
   bool has_room() {
     const std::lock_guard lock(mutex_);
-    return items_.size() < capacity_;
+    return !closed_ && items_.size() < capacity_;
   }
   /// Returns false, dropping the item, if there is no room now or the queue is closed.
   bool try_push(T item) {

@@ -30,6 +30,7 @@ TEST(BoundedQueue, RefusesWhenFullOrClosed) {
   queue.close();
   EXPECT_FALSE(queue.push(3));
   EXPECT_EQ(queue.pop(), 1);
+  EXPECT_FALSE(queue.has_room());  // empty, but closed
   EXPECT_EQ(queue.pop(), std::nullopt);
 }
 

@@ -16,9 +16,20 @@ RightOfWay::Claim::~Claim() {
   if (--way_.claims_ == 0) way_.free_.notify_all();
 }
 
+RightOfWay::Hurry::Hurry(RightOfWay& way) : way_(way) {
+  const std::lock_guard lock(way_.mutex_);
+  ++way_.hurries_;
+  way_.free_.notify_all();
+}
+
+RightOfWay::Hurry::~Hurry() {
+  const std::lock_guard lock(way_.mutex_);
+  --way_.hurries_;
+}
+
 void RightOfWay::wait(std::chrono::steady_clock::duration longest) {
   std::unique_lock lock(mutex_);
-  free_.wait_for(lock, longest, [this] { return claims_ == 0; });
+  free_.wait_for(lock, longest, [this] { return claims_ == 0 || hurries_ > 0; });
 }
 
 void GiveWay::operator()() {

@@ -26,13 +26,28 @@ class RightOfWay {
     RightOfWay& way_;
   };
 
-  /// Waits until nobody has a claim, but not longer than `longest`.
+  /// While it lives, nobody waits: one who gives way holds what this one needs.
+  class Hurry {
+   public:
+    explicit Hurry(RightOfWay& way);
+    ~Hurry();
+    Hurry(const Hurry&) = delete;
+    Hurry(Hurry&&) = delete;
+    Hurry& operator=(const Hurry&) = delete;
+    Hurry& operator=(Hurry&&) = delete;
+
+   private:
+    RightOfWay& way_;
+  };
+
+  /// Waits until nobody has a claim or somebody is in a hurry, but not longer than `longest`.
   void wait(std::chrono::steady_clock::duration longest);
 
  private:
   std::mutex mutex_;
   std::condition_variable free_;
-  int claims_ = 0;  // guarded by mutex_
+  int claims_ = 0;   // guarded by mutex_
+  int hurries_ = 0;  // guarded by mutex_
 };
 
 /// Makes one thread give way, by a call every few milliseconds of its work. It waits no longer than

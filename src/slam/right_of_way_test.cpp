@@ -40,6 +40,17 @@ TEST(RightOfWay, AWaitEndsWithTheLastClaim) {
   EXPECT_TRUE(through);
 }
 
+// Mapping gives way with the map in hand, and relocalization waits for the map.
+TEST(RightOfWay, AHurryEndsTheWaiting) {
+  RightOfWay way;
+  const RightOfWay::Claim claim(way);
+  std::thread waiting([&] { way.wait(kForever); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const RightOfWay::Hurry hurry(way);
+  waiting.join();
+  way.wait(kForever);  // nor does anybody wait from now on
+}
+
 TEST(RightOfWay, AClaimThatNeverEndsHoldsNobodyForGood) {
   RightOfWay way;
   const RightOfWay::Claim claim(way);

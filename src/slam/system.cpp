@@ -34,8 +34,8 @@ System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor
   mapping_ = options_.mode == "slam";
   extractor_->keep_encoder(true);
   if (options_.deterministic) return;
-  threads_.emplace_back([this] { guard(&System::run_tracking); });
-  threads_.emplace_back([this] { guard(&System::run_mapping); });
+  threads_.emplace_back([this] { guard([this] { run_tracking(); }); });
+  threads_.emplace_back([this] { guard([this] { run_mapping(); }); });
 }
 
 System::~System() {
@@ -47,7 +47,7 @@ void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
   require(!began_, "a map must be loaded before the first image");
   require(map.keyframe_count() > 0, "a map to go on with must not be empty");
   backend_.load(std::move(map), std::move(closed_loops));
-  map_loaded_ = true;
+  may_be_map_ = map_begun_ = true;
   next_begins_sequence_ = true;
 }
 
@@ -59,19 +59,23 @@ void System::set_autosave(int keyframes, MapCallback save) {
 }
 
 void System::process(const RgbdImage& image) {
+  error_.rethrow();
   require(!finished_, "no image can be processed after finish()");
-  if (!mapping_ && !map_loaded_) {
+  may_be_map_ = may_be_map_ || mapping_;
+  if (!may_be_map_) {
     throw InputError("localization mode has no map, expected one to be loaded");
   }
   began_ = true;
   Extracted extracted = extract(image);
   if (!options_.deterministic) {
-    extracted_.push(std::move(extracted));
-    rethrow();
-    return;
+    extracted_.push(std::move(extracted));  // or there is an error to throw
+  } else {
+    guard([&] {
+      const Tracked tracked = track(extracted);
+      if (tracked.request) change_map([&] { map_keyframe(tracked); });
+    });
   }
-  const std::optional<KeyframeRequest> request = track(extracted);
-  if (request) map_keyframe(*request);
+  error_.rethrow();
 }
 
 bool System::try_process(const RgbdImage& image) {
@@ -80,23 +84,25 @@ bool System::try_process(const RgbdImage& image) {
     return true;
   }
   live_ = true;
-  rethrow();
+  error_.rethrow();
   if (!extracted_.has_room()) return false;
   process(image);
   return true;
 }
 
 void System::finish(const MayGoOn& may_go_on) {
-  if (finished_) return;
-  finished_ = true;
+  if (std::exchange(finished_, true)) return error_.rethrow();
   extracted_.close();  // each thread closes the queue behind it when its own runs dry
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
-  rethrow();
-  const Stopwatch watch;
-  backend_.finish(may_go_on);
-  times_.add("full_bundle", watch.ms());
-  note_map_size();
+  error_.rethrow();
+  guard([&] {
+    const Stopwatch watch;
+    change_map([&] { backend_.finish(may_go_on); });
+    times_.add("full_bundle", watch.ms());
+    note_map_size();
+  });
+  error_.rethrow();
 }
 
 void System::note_map_size() {
@@ -104,87 +110,123 @@ void System::note_map_size() {
 }
 
 System::Extracted System::extract(const RgbdImage& image) {
-  const bool begins_sequence = std::exchange(next_begins_sequence_, false);
   const RightOfWay::Claim claim(right_of_way_);
   const Stopwatch watch;
   const Features features = extractor_->extract(image.color, false);
   FramePtr frame = make_frame(image, features, camera_);
   const double ms = watch.ms();
   times_.add("extract", ms);
-  return {std::move(frame), begins_sequence, ms};
+  return {std::move(frame), std::exchange(next_begins_sequence_, false), ms};
 }
 
-std::optional<KeyframeRequest> System::track(const Extracted& extracted) {
-  if (LocalMapPtr local_map = newest_local_map()) tracker_.set_local_map(std::move(local_map));
+System::Tracked System::track(const Extracted& extracted) {
+  if (LocalMapPtr local_map = snapshots_.take()) tracker_.set_local_map(std::move(local_map));
   const Stopwatch watch;
-  std::optional<KeyframeRequest> request;
-  const TrackedFrame tracked = track_or_relocalize(extracted, request);
+  Tracked tracked;
+  tracked.mapping = mapping_;
+  TrackedFrame frame = track_or_relocalize(extracted, tracked);
+  tracked.epoch = snapshots_.epoch();
+  if (must_be_dropped(tracked)) {
+    tracker_.take_back_request();
+    tracked.request.reset();
+    frame.is_keyframe = false;
+    ++totals_.dropped_requests;
+  }
   const double ms = watch.ms();
   times_.add("track", ms);
   times_.add("frame", extracted.ms + ms);
-  frames_.append(tracked);
-  if (on_frame_) on_frame_(tracked);
-  return request;
+  frames_.append(frame);
+  if (on_frame_) call([&] { on_frame_(frame); });
+  return tracked;
 }
 
-TrackedFrame System::track_or_relocalize(const Extracted& extracted,
-                                         std::optional<KeyframeRequest>& request) {
+// Live input does not wait for mapping, but for the first keyframe: there is nothing else to track.
+bool System::must_be_dropped(const Tracked& tracked) {
+  return live_ && tracked.request && tracker_.has_local_map() && !tasks_.has_room();
+}
+
+TrackedFrame System::track_or_relocalize(const Extracted& extracted, Tracked& tracked) {
   const FramePtr& frame = extracted.frame;
-  if (extracted.begins_sequence) {
-    if (options_.deterministic && !frames_.empty()) note_map_size();
-    if (!options_.deterministic && !frames_.empty()) tasks_.push([this] { note_map_size(); });
-    // What was seen last says nothing about where the new recording begins.
-    seeking_ = tracker_.has_local_map() || map_loaded_;
-    tracker_.restart();
-    newest_local_map();
-    lost_frames_ = 0;
-    const std::lock_guard lock(map_mutex_);
-    backend_.begin_recording();
+  if (extracted.begins_sequence) begin_recording();
+  if (!tracker_.has_local_map()) {
+    if (!tracked.mapping) seeking_ = true;  // it must not begin a map
+    if (tracked.mapping && !map_begun_) seeking_ = false;
   }
-  TrackedFrame tracked;
-  if (seeking_) {
-    tracked.index = frame->index;
-    tracked.stamp = frame->stamp;
-    tracked.state = TrackingState::kLost;
-    tracked.keypoints = static_cast<int>(frame->size());
-  } else {
+  TrackedFrame result = not_found(*frame);
+  if (!seeking_) {
     const RightOfWay::Claim claim(right_of_way_);
-    tracked = tracker_.track(frame, request);
+    result = tracker_.track(frame, tracked.request);
   }
-  if (tracked.state != TrackingState::kLost) {
+  if (result.state != TrackingState::kLost) {
+    map_begun_ = map_begun_ || tracked.request.has_value();
     lost_frames_ = 0;
-    return tracked;
+    return result;
   }
-  if (std::optional<TrackedFrame> found = find_place(frame, request)) {
+  if (std::optional<TrackedFrame> found = find_place(frame, tracked.request)) {
     lost_frames_ = 0;
     seeking_ = false;
     return *found;
   }
   if (says_something(*frame)) ++lost_frames_;
-  if (lost_frames_ >= options_.new_map_after && mapping_) {
-    tracker_.restart();
-    newest_local_map();
-    lost_frames_ = 0;
+  if (lost_frames_ >= options_.new_map_after && tracked.mapping) {
+    go_on_elsewhere();
     seeking_ = false;
   }
-  return tracked;
+  return result;
+}
+
+TrackedFrame System::not_found(const Frame& frame) const {
+  TrackedFrame result;
+  result.index = frame.index;
+  result.stamp = frame.stamp;
+  result.state = TrackingState::kLost;
+  result.keypoints = static_cast<int>(frame.size());
+  return result;
+}
+
+void System::begin_recording() {
+  // After the keyframes of the recording before, some of which may still wait for mapping.
+  Task task = [this, first = frames_.empty()] {
+    if (!first) note_map_size();
+    backend_.begin_recording();
+  };
+  if (options_.deterministic) {
+    task();
+  } else {
+    tasks_.push(std::move(task));
+  }
+  // What was seen last says nothing about where the new recording begins.
+  backend_.forget_seen();
+  seeking_ = map_begun_;
+  go_on_elsewhere();
+}
+
+void System::go_on_elsewhere() {
+  tracker_.restart();
+  snapshots_.begin_epoch();
+  lost_frames_ = 0;
 }
 
 std::optional<TrackedFrame> System::find_place(const FramePtr& frame,
                                                std::optional<KeyframeRequest>& request) {
   const RelocalizationAnswer answer = relocalize(*frame);
   if (!answer.local_map) return std::nullopt;
-  newest_local_map();  // of where tracking was before
   const TrackedFrame tracked = tracker_.resume(
       frame, answer.local_map, answer.report.world_from_camera, answer.report.points, request);
   if (tracked.state != TrackingState::kTracking) return std::nullopt;
+  snapshots_.begin_epoch();  // what is on its way is of where tracking was before
   return tracked;
 }
 
 // In the thread that waits for it.
 RelocalizationAnswer System::relocalize(const Frame& frame) {
   const Stopwatch watch;
-  const std::lock_guard lock(map_mutex_);
+  std::unique_lock lock(map_mutex_, std::defer_lock);
+  {
+    const RightOfWay::Hurry hurry(
+        right_of_way_);  // mapping may be giving way, with the map in hand
+    lock.lock();
+  }
   if (!map_whole_) return {};
   RelocalizationAnswer answer = backend_.relocalize(frame);
   times_.add("relocalize", watch.ms());
@@ -198,26 +240,36 @@ bool System::says_something(const Frame& frame) const {
   return with_depth >= options_.tracking.min_start_points;
 }
 
-void System::map_keyframe(const KeyframeRequest& request) {
-  if (!mapping_) {
-    publish(backend_.follow(request));
+void System::change_map(const Task& task) {
+  const std::lock_guard lock(map_mutex_);
+  map_whole_ = false;
+  task();
+  map_whole_ = true;
+}
+
+void System::map_keyframe(const Tracked& tracked) {
+  const KeyframeRequest& request = *tracked.request;
+  if (!tracked.mapping) {
+    snapshots_.publish(tracked.epoch, backend_.follow(request));
     return;
   }
   const Stopwatch insert_watch;
-  publish(backend_.insert(request));
+  snapshots_.publish(tracked.epoch, backend_.insert(request));
   if (request.reference == kNoId) {
     roots_.push_back({request.frame->index, request.frame->stamp, backend_.report().keyframe});
   }
   times_.add("map_insert", insert_watch.ms());
   const Stopwatch refine_watch;
-  publish(backend_.refine());
+  snapshots_.publish(tracked.epoch, backend_.refine());
   times_.add("map_refine", refine_watch.ms());
   const Stopwatch loop_watch;
-  if (LocalMapPtr moved = backend_.close_loops()) publish(std::move(moved));
+  if (LocalMapPtr moved = backend_.close_loops()) {
+    snapshots_.publish(tracked.epoch, std::move(moved));
+  }
   times_.add("loop_closing", loop_watch.ms());
   count(backend_.report());
   if (autosave_ && totals_.keyframes % autosave_keyframes_ == 0) {
-    autosave_(map(), backend_.closed_loops());
+    call([this] { autosave_(map(), backend_.closed_loops()); });
   }
 }
 
@@ -233,53 +285,39 @@ void System::count(const MappingReport& report) {
   totals_.outlier_observations += report.outlier_observations;
 }
 
-void System::publish(LocalMapPtr local_map) {
-  const std::lock_guard lock(local_map_mutex_);
-  published_ = std::move(local_map);
-  local_map_changed_.notify_all();
-}
-
-LocalMapPtr System::newest_local_map() {
-  const std::lock_guard lock(local_map_mutex_);
-  return std::exchange(published_, nullptr);
-}
-
 void System::run_tracking() {
   while (std::optional<Extracted> extracted = extracted_.pop()) {
-    std::optional<KeyframeRequest> request = track(*extracted);
-    if (!request) continue;
+    Tracked tracked = track(*extracted);
+    if (!tracked.request) continue;
     const bool first = !tracker_.has_local_map();
-    Task task = [this, asked = std::move(*request)] { map_keyframe(asked); };
-    if (live_ && !first) {
-      if (!tasks_.try_push(std::move(task))) ++totals_.dropped_requests;
-      continue;
-    }
-    if (!tasks_.push(std::move(task))) break;
-    if (!first) continue;
+    if (!tasks_.push([this, asked = std::move(tracked)] { map_keyframe(asked); })) break;
     // There is nothing to track against before the first keyframe is in the map.
-    std::unique_lock lock(local_map_mutex_);
-    local_map_changed_.wait(lock, [&] { return published_ != nullptr || stopped_; });
+    if (first && !snapshots_.wait()) break;
   }
   tasks_.close();
 }
 
 void System::run_mapping() {
-  while (const std::optional<Task> task = tasks_.pop()) {
-    const std::lock_guard lock(map_mutex_);
-    map_whole_ = false;
-    (*task)();
-    map_whole_ = true;
-  }
+  while (const std::optional<Task> task = tasks_.pop()) change_map(*task);
 }
 
-void System::guard(void (System::*body)()) {
+void System::call(const std::function<void()>& callback) {
+  std::string said = "something that is no exception";
   try {
-    (this->*body)();
+    return callback();
+  } catch (const std::exception& error) {
+    said = error.what();
   } catch (...) {
-    {
-      const std::lock_guard lock(error_mutex_);
-      if (!error_) error_ = std::current_exception();
-    }
+  }
+  const std::lock_guard lock(callback_mutex_);
+  if (callback_failures_.count++ == 0) callback_failures_.first = said;
+}
+
+void System::guard(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (...) {
+    error_.keep_current();
     close_queues();
   }
 }
@@ -287,14 +325,7 @@ void System::guard(void (System::*body)()) {
 void System::close_queues() {
   extracted_.close();
   tasks_.close();
-  const std::lock_guard lock(local_map_mutex_);
-  stopped_ = true;
-  local_map_changed_.notify_all();
-}
-
-void System::rethrow() {
-  const std::lock_guard lock(error_mutex_);
-  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+  snapshots_.stop();
 }
 
 std::vector<ComponentSummary> System::components() const {

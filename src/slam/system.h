@@ -3,10 +3,10 @@
 #pragma once
 
 #include <atomic>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -15,8 +15,10 @@
 #include "optimization/may_go_on.h"
 #include "slam/backend.h"
 #include "slam/bounded_queue.h"
+#include "slam/first_error.h"
 #include "slam/frame_log.h"
 #include "slam/right_of_way.h"
+#include "slam/snapshot_exchange.h"
 #include "slam/stage_times.h"
 #include "slam/system_options.h"
 #include "tracking/tracker.h"
@@ -45,6 +47,12 @@ struct ComponentSummary {
   std::size_t frames = 0;  ///< tracked in it
 };
 
+/// What the callbacks threw. They should not; it ends nothing, but is not forgotten either.
+struct CallbackFailures {
+  int count = 0;
+  std::string first;  ///< what it said
+};
+
 /// How large the map was when a recording ended.
 struct MapSize {
   std::size_t keyframes = 0;
@@ -58,8 +66,13 @@ struct MapSize {
 /// caller's thread, and equal input gives equal output to the bit.
 ///
 /// process(), try_process() and finish() belong to one thread; on_frame is called by the tracking
-/// thread (in deterministic mode by the caller's). Exceptions of the inner threads come out of the
-/// next call.
+/// thread (in deterministic mode by the caller's).
+///
+/// What goes wrong in tracking or mapping ends the run: process(), try_process() and finish() throw
+/// it, every time from then on. finish() stops the threads all the same, so that the results so far
+/// can be read afterwards: the frames always, and the map and what hangs on it (components,
+/// trajectories) where map_is_whole(). What extraction throws concerns its image alone: the next
+/// one may follow. What a callback throws is caught and counted (callback_failures()).
 class System {
  public:
   using FrameCallback = std::function<void(const TrackedFrame&)>;
@@ -74,11 +87,12 @@ class System {
   /// Goes on with a map made before: the first frames look for their place in it. Before the first
   /// image only. Throws InputError in localization mode without a map (at the first image).
   void load_map(Map map, std::vector<LoopEdge> closed_loops);
-  /// Calls `save` in the mapping thread after every `keyframes` new ones; the map must not be kept
-  /// beyond the call. Before the first image only.
+  /// Calls `save` in the mapping thread after every `keyframes` new ones, whether or not it threw
+  /// the time before; the map must not be kept beyond the call. Before the first image only.
   using MapCallback = std::function<void(const Map&, const std::vector<LoopEdge>&)>;
   void set_autosave(int keyframes, MapCallback save);
-  /// Switches between mapping (true) and localization only, from the next keyframe on. Any thread.
+  /// Switches between mapping (true) and localization in the map so far, from the next frame on.
+  /// Any thread.
   void set_mapping(bool on) { mapping_ = on; }
   /// The next image is of another recording: it may be anywhere in the map.
   void begin_sequence() { next_begins_sequence_ = true; }
@@ -89,9 +103,10 @@ class System {
   /// The same for live input: returns false, dropping the image, if tracking is that far behind;
   /// mapping never holds up tracking.
   bool try_process(const RgbdImage& image);
-  /// Waits until all is done, adjusts the whole map if so configured, and stops the threads. Only
-  /// then may the results below be read. Further calls do nothing. Where `may_go_on` says no, what
-  /// would adjust the whole map is given up and the map left as tracking and mapping made it.
+  /// Waits until all is done, stops the threads, and adjusts the whole map if so configured and
+  /// nothing went wrong. Only then may the results below be read. Further calls do nothing, but
+  /// throw what went wrong again. Where `may_go_on` says no, what would adjust the whole map is
+  /// given up and the map left as tracking and mapping made it.
   void finish(const MayGoOn& may_go_on = {});
 
   /// Every frame given, in order. The ones that began a map have no reference.
@@ -103,12 +118,15 @@ class System {
   Trajectory trajectory(std::optional<std::uint32_t> component = std::nullopt) const;
   /// Poses of the keyframes, likewise.
   Trajectory keyframe_trajectory(std::optional<std::uint32_t> component = std::nullopt) const;
+  /// False if a change of the map failed halfway: nothing should be read from it.
+  bool map_is_whole() const { return map_whole_; }
   const Map& map() const { return backend_.map(); }
   const Backend& backend() const { return backend_; }
   /// One a recording (begin_sequence), in order.
   const std::vector<MapSize>& map_sizes() const { return map_sizes_; }
   const MappingTotals& mapping_totals() const { return totals_; }
   const StageTimes& times() const { return times_; }
+  const CallbackFailures& callback_failures() const { return callback_failures_; }
   const FeatureExtractor& extractor() const { return *extractor_; }
 
  private:
@@ -118,6 +136,13 @@ class System {
     double ms = 0.0;  // what extraction took
   };
   using Task = std::function<void()>;  // for the mapping thread
+  using Epoch = SnapshotExchange::Epoch;
+
+  struct Tracked {
+    std::optional<KeyframeRequest> request;
+    Epoch epoch = 0;       // of the request
+    bool mapping = false;  // or localization
+  };
 
   /// The keyframe that a component began with, and its image.
   struct Root {
@@ -127,16 +152,18 @@ class System {
   };
 
   Extracted extract(const RgbdImage& image);
-  std::optional<KeyframeRequest> track(const Extracted& extracted);
-  TrackedFrame track_or_relocalize(const Extracted& extracted,
-                                   std::optional<KeyframeRequest>& request);
+  Tracked track(const Extracted& extracted);
+  TrackedFrame track_or_relocalize(const Extracted& extracted, Tracked& tracked);
+  TrackedFrame not_found(const Frame& frame) const;
+  void begin_recording();
+  void go_on_elsewhere();
+  bool must_be_dropped(const Tracked& tracked);
   std::optional<TrackedFrame> find_place(const FramePtr& frame,
                                          std::optional<KeyframeRequest>& request);
-  void map_keyframe(const KeyframeRequest& request);
+  void change_map(const Task& task);
+  void map_keyframe(const Tracked& tracked);
   RelocalizationAnswer relocalize(const Frame& frame);
   bool says_something(const Frame& frame) const;
-  void publish(LocalMapPtr local_map);
-  LocalMapPtr newest_local_map();
   void count(const MappingReport& report);
   void note_map_size();
   KeyframeId reference_of(const TrackedFrame& frame) const;
@@ -144,9 +171,9 @@ class System {
 
   void run_tracking();
   void run_mapping();
-  void guard(void (System::*body)());
+  void call(const std::function<void()>& callback);
+  void guard(const std::function<void()>& body);
   void close_queues();
-  void rethrow();
 
   Camera camera_;
   SystemOptions options_;
@@ -162,11 +189,12 @@ class System {
   StageTimes times_;
   MapCallback autosave_;
   int autosave_keyframes_ = 0;
-  bool began_ = false;  // an image was given
+  bool began_ = false;       // an image was given
+  bool may_be_map_ = false;  // one was loaded, or an image was given while mapping
   bool next_begins_sequence_ = false;
-  bool seeking_ = false;  // there is a map, but where in it is not known
-  int lost_frames_ = 0;   // in a row
-  bool map_loaded_ = false;
+  bool seeking_ = false;    // where in the map the camera is, is not known
+  bool map_begun_ = false;  // as far as the tracking thread knows
+  int lost_frames_ = 0;     // in a row
   std::atomic<bool> mapping_{true};
 
   // Held while the map is changed; tracking takes it to relocalize.
@@ -175,13 +203,11 @@ class System {
 
   BoundedQueue<Extracted> extracted_;
   BoundedQueue<Task> tasks_;
-  std::mutex local_map_mutex_;
-  std::condition_variable local_map_changed_;
-  LocalMapPtr published_;  // guarded by local_map_mutex_
-  bool stopped_ = false;   // guarded by local_map_mutex_
+  SnapshotExchange snapshots_;
   std::atomic<bool> live_{false};
-  std::mutex error_mutex_;
-  std::exception_ptr error_;  // guarded by error_mutex_
+  FirstError error_;
+  std::mutex callback_mutex_;
+  CallbackFailures callback_failures_;  // guarded by callback_mutex_
   std::vector<std::thread> threads_;
   bool finished_ = false;
 };

@@ -118,6 +118,35 @@ TEST(System, LocalizationNeedsAMap) {
   }
 }
 
+TEST(System, LocalizesInTheMapThatItMadeItself) {
+  const auto system = make_system(deterministic());
+  feed(*system, 0, 15);
+  const std::size_t made = system->map().keyframe_count();
+  system->set_mapping(false);
+  feed(*system, 15, 25);
+  EXPECT_EQ(system->map().keyframe_count(), made);
+  system->begin_sequence();
+  feed(*system, 0, 15, 100.0);  // found again, too
+  system->finish();
+  EXPECT_EQ(system->map().keyframe_count(), made);
+  EXPECT_GT(system->trajectory().size(), 30U);
+}
+
+TEST(System, LocalizationBeginsNoMap) {
+  const auto system = make_system(deterministic());
+  RgbdImage covered = recording().images()[0];
+  covered.color = covered.color.clone();
+  std::memset(covered.color.data, 0xFF, sizeof(std::int32_t));
+  system->process(covered);  // there is no map after it
+  system->set_mapping(false);
+  feed(*system, 1, 10);
+  EXPECT_EQ(system->map().keyframe_count(), 0U);
+  system->set_mapping(true);
+  feed(*system, 10, 20);
+  system->finish();
+  EXPECT_EQ(system->trajectory().size(), 10U);
+}
+
 TEST(System, BeginsANewMapWhenItCannotFindItselfAndJoinsThemLater) {
   SystemOptions options = deterministic();
   options.new_map_after = 3;

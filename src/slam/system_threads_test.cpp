@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "slam/system.h"
@@ -132,6 +133,79 @@ TEST(SystemThreads, HandOnWhatWentWrongInside) {
   EXPECT_THROW(feed(kFrames / 2), std::runtime_error);
   EXPECT_THROW(feed(kFrames - 1), std::runtime_error);
   EXPECT_NO_THROW(feed(kFrames));
+}
+
+void expect_the_error(const std::function<void()>& call) {
+  try {
+    call();
+    ADD_FAILURE() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "broken encoder");
+  }
+}
+
+TEST(SystemThreads, AnErrorInsideStaysAndResultsSoFarCanBeRead) {
+  for (const bool deterministic : {true, false}) {
+    System system(recording().camera(), std::make_unique<RecordingExtractor>(-1, 3),
+                  options(deterministic));
+    const std::vector<RgbdImage>& images = recording().images();
+    expect_the_error([&] {
+      for (const RgbdImage& image : images) system.process(image);
+      system.finish();
+    });
+    for (int i = 0; i < 3; ++i) {
+      expect_the_error([&] { system.process(images.back()); });
+      expect_the_error([&] { system.try_process(images.back()); });
+    }
+    expect_the_error([&] { system.finish(); });
+    expect_the_error([&] { system.finish(); });
+    expect_the_error([&] { system.process(images.back()); });
+    EXPECT_GT(system.frames().size(), 3U) << deterministic;
+    EXPECT_EQ(system.frames()[0].state, TrackingState::kTracking);
+    EXPECT_FALSE(system.map_is_whole());
+  }
+}
+
+TEST(SystemThreads, AnImageThatCannotBeExtractedCostsOnlyItself) {
+  for (const bool deterministic : {true, false}) {
+    System system(recording().camera(), std::make_unique<RecordingExtractor>(20),
+                  options(deterministic));
+    int failed = 0;
+    for (const RgbdImage& image : recording().images()) {
+      try {
+        system.process(image);
+      } catch (const std::runtime_error&) {
+        ++failed;
+      }
+    }
+    system.finish();
+    EXPECT_EQ(failed, 1);
+    EXPECT_EQ(system.trajectory().size(), static_cast<std::size_t>(kFrames - 1)) << deterministic;
+    EXPECT_TRUE(system.map_is_whole());
+  }
+}
+
+TEST(SystemThreads, ACallbackThatThrowsEndsNothing) {
+  for (const bool deterministic : {true, false}) {
+    std::atomic<int> frames{0};
+    System system(recording().camera(), std::make_unique<RecordingExtractor>(),
+                  options(deterministic), [&](const TrackedFrame&) {
+                    if (++frames == 5) throw 5;
+                  });
+    int saves = 0;
+    system.set_autosave(2, [&](const Map&, const std::vector<LoopEdge>&) {
+      ++saves;
+      throw std::runtime_error("disk full");
+    });
+    for (const RgbdImage& image : recording().images()) system.process(image);
+    system.finish();
+    EXPECT_EQ(frames, kFrames);
+    EXPECT_GT(saves, 1);
+    EXPECT_EQ(saves, system.mapping_totals().keyframes / 2);  // tried again each time
+    EXPECT_EQ(system.callback_failures().count, saves + 1);
+    EXPECT_FALSE(system.callback_failures().first.empty());
+    EXPECT_EQ(system.trajectory().size(), static_cast<std::size_t>(kFrames));
+  }
 }
 
 TEST(SystemThreads, EndWithoutFinish) {

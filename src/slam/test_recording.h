@@ -90,7 +90,9 @@ inline const Recording& recording() {
 
 class RecordingExtractor : public FeatureExtractor {
  public:
-  explicit RecordingExtractor(int broken = -1) : broken_(broken) {}
+  /// `broken`: the image, from 0, that cannot be extracted; `broken_global`: the call of global_of.
+  explicit RecordingExtractor(int broken = -1, int broken_global = -1)
+      : broken_(broken), broken_global_(broken_global) {}
   const std::string& name() const override { return name_; }
   const DescriptorTraits& traits() const override { return traits_; }
   Features extract(const cv::Mat& image, bool) override {
@@ -98,6 +100,7 @@ class RecordingExtractor : public FeatureExtractor {
     return recording().features(image);
   }
   std::vector<float> global_of(const cv::Mat& encoder) override {
+    if (globals_++ == broken_global_) throw std::runtime_error("broken encoder");
     const float angle = encoder.at<float>(0, 0);
     return {std::cos(angle), std::sin(angle)};
   }
@@ -106,7 +109,9 @@ class RecordingExtractor : public FeatureExtractor {
   const std::string name_ = "recording";
   const DescriptorTraits traits_ = recording().traits();
   const int broken_;
+  const int broken_global_;
   int count_ = 0;
+  int globals_ = 0;
 };
 
 }  // namespace dxslam
