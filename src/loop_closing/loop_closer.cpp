@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "loop_closing/loop_closer.h"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 #include "core/options.h"
@@ -52,10 +54,24 @@ void LoopCloser::carry_out(const LoopAttempt& attempt, Map& map, LoopReport& rep
   if (moves) bundle_.cancel();
   report.change = apply_loop_plan(attempt.plan, attempt.verification, camera_, traits_,
                                   options_.correction, map, closed_);
+  forget_doubles(map);
   last_closed_ = report.query;
   if (!moves || !options_.full_bundle) return;
   bundle_.start(map, map.keyframe(report.query).component);
   report.bundle_started = true;
+}
+
+// The essential graph has one edge for each pair of living keyframes: more of them, which gather
+// where a place is seen again and again, tell it nothing.
+void LoopCloser::forget_doubles(const Map& map) {
+  std::set<std::pair<KeyframeId, KeyframeId>> known;
+  std::vector<LoopEdge> kept;
+  for (const LoopEdge& loop : closed_) {
+    const LoopEdge living{map.anchor_of(loop.a).keyframe, map.anchor_of(loop.b).keyframe};
+    if (living.a == living.b) continue;
+    if (known.insert(std::minmax(living.a, living.b)).second) kept.push_back(living);
+  }
+  closed_ = std::move(kept);
 }
 
 }  // namespace dxslam

@@ -84,11 +84,13 @@ class LoopCloser {
   void cancel() { bundle_.cancel(); }
   bool bundle_pending() const { return bundle_.pending(); }
 
-  /// The loops closed so far. They belong to the map: save them with it and hand them back.
+  /// The loops closed so far, one for each pair of keyframes. They belong to the map: save them
+  /// with it and hand them back.
   const std::vector<LoopEdge>& closed_loops() const { return closed_; }
   void set_closed_loops(std::vector<LoopEdge> closed) { closed_ = std::move(closed); }
 
  private:
+  void forget_doubles(const Map& map);
   void carry_out(const LoopAttempt& attempt, Map& map, LoopReport& report);
 
   Camera camera_;

@@ -44,6 +44,20 @@ TEST_F(LoopCloserTest, TriesCandidatesInTurnAndClosesTheFirstTrueOne) {
   EXPECT_FALSE(closer_.poll(walk.map));
 }
 
+// In one place loops are closed for hours, between keyframes that are culled soon.
+TEST_F(LoopCloserTest, KeepsOneLoopForEachPairOfLivingKeyframes) {
+  Drift drift;
+  drift.turn_bias = 0.001;
+  RingWalk walk(scene_, drift);
+  const KeyframeId query = walk.walk(0.0, scene_.circumference() + 1.5);
+  walk.map.remove_keyframe(20);  // hangs on 19 now
+  closer_.set_closed_loops({{19, 21}, {20, 21}, {21, 19}, {19, 20}, {21, 22}});
+  ASSERT_EQ(closer_.consider(walk.map, query, {3}).effect, LoopEffect::kBend);
+  ASSERT_EQ(closer_.closed_loops().size(), 3U);
+  EXPECT_EQ(closer_.closed_loops()[0].a, 19U);
+  EXPECT_EQ(closer_.closed_loops()[1].b, 22U);
+}
+
 TEST_F(LoopCloserTest, WrongCandidatesLeaveTheMapAsItWas) {
   scene_.copy_wall(2.0, 17.0, 6.0);  // a perfect double
   RingWalk walk(scene_);
