@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "io/primitives/image_file.h"
 
@@ -53,6 +54,19 @@ std::vector<std::string> Thumbnails::of(const Map& map) const {
   }
   const bool none = std::all_of(all.begin(), all.end(), [](const auto& t) { return t.empty(); });
   return none ? std::vector<std::string>() : all;
+}
+
+void Thumbnails::forget_culled(const Map& map) {
+  const std::lock_guard lock(mutex_);
+  std::set<std::int64_t> alive;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    if (id >= stored_.size()) alive.insert(map.keyframe(id).frame->index);
+  }
+  if (alive.empty()) return;
+  const std::int64_t newest = *alive.rbegin();  // those after it are still on their way to the map
+  std::erase_if(taken_, [&](const auto& taken) {
+    return taken.first < newest && alive.count(taken.first) == 0;
+  });
 }
 
 }  // namespace dxslam::apps

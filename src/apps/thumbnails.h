@@ -31,6 +31,8 @@ class Thumbnails {
   void note(const TrackedFrame& frame);
   /// One for each keyframe, by id, up to the last one there is; empty for keyframes without.
   std::vector<std::string> of(const Map& map) const;
+  /// Lets those of keyframes go that were culled. Call now and then, with the map as it grows.
+  void forget_culled(const Map& map);
 
  private:
   struct Small {

@@ -25,6 +25,7 @@
 namespace dxslam::apps {
 namespace {
 
+constexpr int kThumbnailsTidied = 100;    // keyframes between two times that old ones are let go
 constexpr double kMinTrackedShare = 0.1;  // below it the run counts as failed
 
 SystemOptions options_of(const RunSettings& settings) {
@@ -162,9 +163,11 @@ int run(const RunSettings& settings) {
   }
   thumbnails.emplace(settings.thumbnails, std::move(stored));
   AutoSaver saver(settings.map_out, header);
-  if (settings.autosave > 0) {
-    system.set_autosave(settings.autosave, [&](const Map& map, const std::vector<LoopEdge>& loops) {
-      saver.save(map, loops, thumbnails->of(map));
+  if (settings.autosave > 0 || settings.thumbnails) {
+    const int every = settings.autosave > 0 ? settings.autosave : kThumbnailsTidied;
+    system.set_autosave(every, [&](const Map& map, const std::vector<LoopEdge>& loops) {
+      thumbnails->forget_culled(map);
+      if (settings.autosave > 0) saver.save(map, loops, thumbnails->of(map));
     });
   }
   record.startup_ms = startup.ms();
