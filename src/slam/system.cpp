@@ -85,7 +85,7 @@ bool System::try_process(const RgbdImage& image) {
   }
   live_ = true;
   error_.rethrow();
-  if (!extracted_.has_room()) return false;
+  if (!finished_ && !extracted_.has_room()) return false;
   process(image);
   return true;
 }
@@ -223,8 +223,8 @@ RelocalizationAnswer System::relocalize(const Frame& frame) {
   const Stopwatch watch;
   std::unique_lock lock(map_mutex_, std::defer_lock);
   {
-    const RightOfWay::Hurry hurry(
-        right_of_way_);  // mapping may be giving way, with the map in hand
+    // Mapping may be giving way to frames, with the map in hand.
+    const RightOfWay::Hurry hurry(right_of_way_);
     lock.lock();
   }
   if (!map_whole_) return {};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -27,16 +28,16 @@ namespace dxslam {
 
 /// Counts over everything mapping did.
 struct MappingTotals {
-  int keyframes = 0;
-  int new_points = 0;
-  int triangulated_points = 0;
-  int fused_points = 0;
-  int culled_points = 0;
-  int culled_keyframes = 0;
-  int bundle_keyframes = 0;      ///< moved by local bundle adjustment, summed over keyframes
-  int bundle_observations = 0;   ///< in it
-  int outlier_observations = 0;  ///< unbound by it
-  int dropped_requests = 0;      ///< keyframes given up since mapping was busy (real time only)
+  std::int64_t keyframes = 0;
+  std::int64_t new_points = 0;
+  std::int64_t triangulated_points = 0;
+  std::int64_t fused_points = 0;
+  std::int64_t culled_points = 0;
+  std::int64_t culled_keyframes = 0;
+  std::int64_t bundle_keyframes = 0;  ///< moved by local bundle adjustment, summed over keyframes
+  std::int64_t bundle_observations = 0;   ///< in it
+  std::int64_t outlier_observations = 0;  ///< unbound by it
+  std::int64_t dropped_requests = 0;      ///< since mapping was busy (real time only)
 };
 
 /// Frames and keyframes whose poses are known relative to one another: one map of several.
