@@ -115,6 +115,31 @@ class Config(Recorded):
         self.assertIn("tracking:", text)
         self.succeed(self.run_with(file))
 
+    def test_users_see_few_options_and_experts_all(self):
+        def options(text):
+            return {line.split(":")[0].strip() for line in text.splitlines()
+                    if re.match(r"\s*\w+: \S", line) and not line.startswith("#")}
+
+        users, _ = self.dumped()
+        experts = self.succeed(dxslam("config", "dump", "--all")).stdout
+        self.assertTrue(15 <= len(re.findall(r"(?m)^ *\w+: \S", users)) <= 25, users)
+        self.assertLess(options(users), options(experts))
+        self.assertIn("deterministic", options(users))
+        self.assertIn("--all", users)
+        file = self.folder / "all.yaml"
+        file.write_text(experts)
+        self.succeed(self.run_with(file))
+
+    def test_options_that_contradict_each_other_are_refused(self):
+        file = self.folder / "contradiction.yaml"
+        file.write_text("tracking: {weak_agreement: 0.9}\n")
+        self.refuse(self.run_with(file), "tracking.weak_agreement is 0.9", "fair_agreement")
+
+    def test_options_of_the_loop_experiment_are_no_options_of_a_run(self):
+        file = self.folder / "loops.yaml"
+        file.write_text("loop_detection: {min_inliers_hf: 30}\n")
+        self.refuse(self.run_with(file), "min_inliers_hf", "loops.yaml")
+
     def test_unknown_key_is_refused(self):
         _, file = self.dumped()
         wrong = self.folder / "unknown.yaml"

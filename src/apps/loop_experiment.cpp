@@ -101,7 +101,7 @@ class Experiment {
     make_side(true, orb_);
     make_side(false, hf_);
     for (const LoopMethod& method : methods_) {
-      LoopOptions options = settings.detector;
+      LoopDetectorOptions options = settings.detector;
       options.method = method.name;
       FeatureSide* side = (method.orb ? orb_ : hf_).get();
       if (method.global && side->extractor().traits().global_dimension == 0) {

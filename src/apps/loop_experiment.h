@@ -24,8 +24,8 @@ struct LoopSettings {
   std::string truth;  ///< "poses" or a file
   PoseLoopOptions poses;
   std::vector<std::string> methods;
-  LoopOptions detector;  ///< the method aside
-  std::string features;  ///< of all methods but orb-bow; the default extractor where empty
+  LoopDetectorOptions detector;  ///< the method aside
+  std::string features;          ///< of all methods but orb-bow; the default extractor where empty
   ExtractorOptions extractor;
   std::string hf_vocabulary;   ///< file; the one shipped for the extractor where empty
   std::string orb_vocabulary;  ///< likewise
@@ -44,7 +44,7 @@ struct LoopQuery {
 };
 
 struct MethodRun {
-  LoopOptions options;
+  LoopDetectorOptions options;
   std::size_t words = 0;  ///< of the vocabulary; 0 where there is none
   std::vector<LoopQuery> queries;
 };

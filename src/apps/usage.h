@@ -19,11 +19,11 @@ struct RangeFinder {
   std::optional<Range> range;
   bool whole;
 
-  void operator()(const char*, const bool&, const char*, const char*) {}
-  void operator()(const char*, const std::string&, const char*, const char*) {}
+  void operator()(OptionName, const bool&, const char*, const char*) {}
+  void operator()(OptionName, const std::string&, const char*, const char*) {}
   template <class Number>
-  void operator()(const char* name, const Number&, Range found, const char*, const char*) {
-    if (std::string(name) != field) return;
+  void operator()(OptionName name, const Number&, Range found, const char*, const char*) {
+    if (std::string(name.text) != field) return;
     range = found;
     whole = std::is_integral_v<Number>;
   }

@@ -12,10 +12,16 @@ namespace {
 
 struct InnerOptions {
   double gate = 2.0;
+  double wide_gate = 4.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("gate", self.gate, {0.5, 4.0}, "sigma", "a gate");
+    visit(for_users("wide_gate"), self.wide_gate, {0.5, 9.0}, "sigma", "another");
+  }
+  template <class Checker>
+  void relate(const Checker& check) const {
+    check.at_most("gate", gate, "wide_gate", wide_gate);
   }
 };
 
@@ -61,6 +67,15 @@ TEST(Options, ChecksNestedGroups) {
   OuterOptions options;
   options.inner.gate = 4.5;
   EXPECT_THAT(refusal(options), testing::HasSubstr("outer.inner.gate is 4.5 sigma"));
+}
+
+TEST(Options, ChecksRelationsOfNestedGroups) {
+  OuterOptions options;
+  options.inner.wide_gate = options.inner.gate;
+  EXPECT_EQ(refusal(options), "");
+  options.inner.wide_gate = 1.5;
+  EXPECT_EQ(refusal(options),
+            "option outer.inner.gate is 2, expected at most outer.inner.wide_gate, which is 1.5");
 }
 
 TEST(Options, RefusesNan) {

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "core/options.h"
+
 namespace dxslam {
 
 /// What a user may change about any extractor. -1 (or 0 keypoints) leaves the value to the
@@ -15,7 +17,7 @@ struct ExtractorOptions {
   /// float model in the fastest precision of the processor (bf16 where it has that).
   std::string precision = "auto";
   /// Forces f32 arithmetic, and the float model unless int8 is asked for: bit-equal results in
-  /// every run and for every number of threads.
+  /// every run and for every number of threads. Not read from files: it follows the system's.
   bool deterministic = false;
   /// Where compiled networks are kept: a folder, `auto` ($XDG_CACHE_HOME/dxslam or
   /// ~/.cache/dxslam), or empty for nowhere.
@@ -27,13 +29,11 @@ struct ExtractorOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit("max_keypoints", self.max_keypoints, {0, 20000}, "keypoints",
+    visit(for_users("max_keypoints"), self.max_keypoints, {0, 20000}, "keypoints",
           "most keypoints per image; 0 = as the extractor says");
-    visit("threads", self.threads, {1, 256}, "threads", "threads of the network");
-    visit("precision", self.precision, "", "auto, f32, bf16 or int8");
-    visit("deterministic", self.deterministic, "",
-          "f32 arithmetic only: the same bits in every run and for any number of threads");
-    visit("cache_dir", self.cache_dir, "",
+    visit(for_users("threads"), self.threads, {1, 256}, "threads", "threads of the network");
+    visit(for_users("precision"), self.precision, "", "auto, f32, bf16 or int8");
+    visit(for_users("cache_dir"), self.cache_dir, "",
           "folder of compiled networks; auto = the user's cache folder, empty = none");
     visit("score_threshold", self.score_threshold, {-1, 1}, "",
           "lowest score of a keypoint; -1 = as the extractor says");

@@ -7,6 +7,7 @@
 
 #include "core/camera.h"
 #include "core/features.h"
+#include "core/options.h"
 #include "loop_closing/background_bundle.h"
 #include "loop_closing/loop_correction.h"
 #include "loop_closing/loop_verification.h"
@@ -28,7 +29,7 @@ struct LoopCloserOptions {
           "most candidates verified for one keyframe");
     visit("pause_keyframes", self.pause_keyframes, {0, 100000}, "keyframes",
           "that go by after a loop before the next one is looked at");
-    visit("full_bundle", self.full_bundle, "",
+    visit(for_users("full_bundle"), self.full_bundle, "",
           "adjust all keyframes and points in the background after a correction");
     visit.group("verification", self.verification);
     visit.group("correction", self.correction);

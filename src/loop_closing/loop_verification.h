@@ -92,6 +92,11 @@ struct LoopVerificationOptions {
     visit.group("pnp", self.pnp);
     visit.group("pose", self.pose);
   }
+  template <class Checker>
+  void relate(const Checker& check) const {
+    check.at_most("min_confirmations", min_confirmations, "confirming_keyframes",
+                  confirming_keyframes);
+  }
 };
 
 /// A keypoint of the query is an image of a point of the candidate's group.

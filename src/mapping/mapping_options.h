@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include "core/options.h"
 #include "map/local_map.h"
 #include "optimization/bundle_adjustment.h"
 
@@ -38,7 +39,7 @@ struct MappingOptions {
           "nearest to second nearest descriptor distance");
     visit("fuse_depth_tolerance", self.fuse_depth_tolerance, {0.001, 10}, "",
           "relative difference of predicted and measured depth");
-    visit("max_point_depth", self.max_point_depth, {0.1, 1000}, "m",
+    visit(for_users("max_point_depth"), self.max_point_depth, {0.1, 1000}, "m",
           "farthest depth reading that makes a point");
     visit("triangulation_keyframes", self.triangulation_keyframes, {0, 100}, "keyframes",
           "neighbours with which keypoints without depth are triangulated");
@@ -56,7 +57,7 @@ struct MappingOptions {
           "most keyframes that hold its border");
     visit("bundle_min_shared", self.bundle_min_shared, {1, 100000}, "points",
           "shared with the new keyframe by those it moves");
-    visit("redundant_share", self.redundant_share, {0.1, 1}, "",
+    visit(for_users("redundant_share"), self.redundant_share, {0.1, 1}, "",
           "share of points seen elsewhere that makes a keyframe redundant");
     visit("redundant_share_known", self.redundant_share_known, {0.1, 1}, "",
           "the same where most points are known from earlier recordings");
@@ -64,6 +65,11 @@ struct MappingOptions {
           "others that must see a point for that");
     visit.group("local_map", self.local_map);
     visit.group("bundle", self.bundle);
+  }
+  template <class Checker>
+  void relate(const Checker& check) const {
+    check.at_most("redundant_share_known", redundant_share_known, "redundant_share",
+                  redundant_share);
   }
 };
 

@@ -48,6 +48,10 @@ struct BundleOptions {
     visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2",
           "gate of an observation with depth");
   }
+  template <class Checker>
+  void relate(const Checker& check) const {
+    check.at_most("chi2_pixel", chi2_pixel, "chi2_depth", chi2_depth);
+  }
 };
 
 struct BundleReport {

@@ -36,6 +36,10 @@ struct PoseOptimizerOptions {
           "gate of an observation with depth");
     visit("min_inliers", self.min_inliers, {4, 1000}, "points", "fewer inliers are a failure");
   }
+  template <class Checker>
+  void relate(const Checker& check) const {
+    check.at_most("chi2_pixel", chi2_pixel, "chi2_depth", chi2_depth);
+  }
 };
 
 struct PoseReport {

@@ -39,7 +39,7 @@ const char* to_string(LoopVerdict verdict) {
   return "";
 }
 
-LoopDetector::LoopDetector(const LoopOptions& options)
+LoopDetector::LoopDetector(const LoopDetectorOptions& options)
     : options_(options), method_(parse_loop_method(options.method)) {
   validate_options("loops", options_);
 }

@@ -55,9 +55,9 @@ using LoopVerifier = std::function<int(std::uint32_t id)>;
 class LoopDetector {
  public:
   /// Throws InputError for options out of range or an unknown method.
-  explicit LoopDetector(const LoopOptions& options = {});
+  explicit LoopDetector(const LoopDetectorOptions& options = {});
 
-  const LoopOptions& options() const { return options_; }
+  const LoopDetectorOptions& options() const { return options_; }
   const LoopMethod& method() const { return method_; }
   const PlaceDatabase& places() const { return places_; }
 
@@ -81,7 +81,7 @@ class LoopDetector {
   LoopVerdict judge(const LoopCandidate& candidate) const;
   bool consistent(std::optional<std::uint32_t> place);
 
-  LoopOptions options_;
+  LoopDetectorOptions options_;
   LoopMethod method_;
   PlaceDatabase places_;
   std::optional<std::uint32_t> last_place_;  // of the query before, if it was good enough

@@ -26,8 +26,8 @@ std::vector<float> direction(double degrees) {
 
 double chord(double degrees) { return 2.0 * std::sin(0.5 * degrees * M_PI / 180.0); }
 
-LoopOptions options_for(const std::string& method) {
-  LoopOptions options;
+LoopDetectorOptions options_for(const std::string& method) {
+  LoopDetectorOptions options;
   options.method = method;
   options.candidates = 20;
   options.min_relative_score = 0.0;
@@ -39,7 +39,7 @@ LoopOptions options_for(const std::string& method) {
 
 // The most similar place by words (10) looks different as a whole; 11 shares half of the words and
 // looks the same; 12 looks the same but shares no word.
-LoopDetector make_detector(const LoopOptions& options) {
+LoopDetector make_detector(const LoopDetectorOptions& options) {
   LoopDetector detector(options);
   detector.add(10, words({1, 2, 3, 9}), direction(80));
   detector.add(11, words({1, 2, 7, 8}), direction(10));
@@ -75,7 +75,7 @@ TEST(LoopDetector, TakesTheNearestGlobalDescriptorOfThoseSimilarByWords) {
     EXPECT_NEAR(candidates[0].global_distance, chord(10), 1e-6);
     EXPECT_TRUE(candidates[0].accepted());
   }
-  LoopOptions only_the_first = options_for("hf-bow-global-paper");
+  LoopDetectorOptions only_the_first = options_for("hf-bow-global-paper");
   only_the_first.candidates = 1;
   LoopDetector narrow = make_detector(only_the_first);
   const auto one = query(narrow);
@@ -85,7 +85,7 @@ TEST(LoopDetector, TakesTheNearestGlobalDescriptorOfThoseSimilarByWords) {
 }
 
 TEST(LoopDetector, AsksBothLevelsToAgree) {
-  LoopOptions options = options_for("hf-bow-global");
+  LoopDetectorOptions options = options_for("hf-bow-global");
   LoopDetector agreed = make_detector(options);
   EXPECT_NEAR(query(agreed)[0].confidence, 1.0, 1e-6);  // the score of words
   options.min_score_global = 1.2;                       // place 11 has 1.0
@@ -109,7 +109,7 @@ TEST(LoopDetector, NeedsNoWordsForGlobalOnly) {
 }
 
 TEST(LoopDetector, LooksAtNoPlaceFarLessAlikeByWords) {
-  LoopOptions options = options_for("hf-bow-global");
+  LoopDetectorOptions options = options_for("hf-bow-global");
   LoopDetector all = make_detector(options);
   EXPECT_EQ(query(all)[0].id, 11U);
   options.min_relative_score = 0.7;  // 11 has two thirds of the score of 10
@@ -130,7 +130,7 @@ TEST(LoopDetector, FindsNoExcludedPlace) {
 }
 
 TEST(LoopDetector, SaysWhichThresholdRefused) {
-  LoopOptions strict = options_for("hf-bow");
+  LoopDetectorOptions strict = options_for("hf-bow");
   strict.min_score_hf = 1.6;
   LoopDetector by_words = make_detector(strict);
   EXPECT_EQ(query(by_words)[0].verdict, LoopVerdict::kLowScore);
@@ -152,7 +152,7 @@ TEST(LoopDetector, LetsGeometryDecide) {
 }
 
 TEST(LoopDetector, WaitsForQueriesInARowThatAgree) {
-  LoopOptions options = options_for("hf-bow");
+  LoopDetectorOptions options = options_for("hf-bow");
   options.consistent_queries = 3;
   options.consistent_distance = 1;
   LoopDetector detector = make_detector(options);
@@ -167,7 +167,7 @@ TEST(LoopDetector, WaitsForQueriesInARowThatAgree) {
 }
 
 TEST(LoopDetector, RefusesOptionsThatMeanNothing) {
-  LoopOptions options;
+  LoopDetectorOptions options;
   options.method = "hf";
   EXPECT_THROW(LoopDetector{options}, InputError);
   options = {};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/options.h"
@@ -22,17 +23,11 @@ struct LoopOptions {
   double max_distance = 1.596;         // calibrated
   double max_distance_paper = 0.871;   // calibrated
   double max_distance_global = 0.871;  // calibrated
-  int min_inliers_orb = 42;            // calibrated
-  int min_inliers_hf = 30;             // calibrated
-  int verified_candidates = 3;
-  int consistent_queries = 1;
-  int consistent_distance = 10;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("method", self.method, "",
-          "orb-bow, hf-bow, hf-bow-global, hf-bow-global-paper or global-only, each also with "
-          "+geometry");
+          "orb-bow, hf-bow, hf-bow-global, hf-bow-global-paper or global-only");
     visit("candidates", self.candidates, {1, 10000}, "places",
           "most similar places by words whose global descriptors are compared (hf-bow-global...)");
     visit(
@@ -48,6 +43,25 @@ struct LoopOptions {
           "farthest global descriptor, L2 (hf-bow-global-paper)");
     visit("max_distance_global", self.max_distance_global, {0, 2}, "",
           "farthest global descriptor, L2 (global-only)");
+  }
+};
+
+/// The options of a detector by itself, as `dxslam loops` runs it: without a map, whose geometry
+/// would decide.
+struct LoopDetectorOptions : LoopOptions {
+  LoopDetectorOptions() = default;
+  LoopDetectorOptions(LoopOptions options)  // NOLINT(google-explicit-constructor)
+      : LoopOptions(std::move(options)) {}
+
+  int min_inliers_orb = 42;  // calibrated
+  int min_inliers_hf = 30;   // calibrated
+  int verified_candidates = 3;
+  int consistent_queries = 1;
+  int consistent_distance = 10;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    LoopOptions::describe(self, visit);
     visit("min_inliers_orb", self.min_inliers_orb, {8, 10000}, "matches",
           "fewest matches that agree on a motion between the views (orb-bow+geometry)");
     visit("min_inliers_hf", self.min_inliers_hf, {8, 10000}, "matches",

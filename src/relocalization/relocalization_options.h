@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include "core/options.h"
 #include "geometry/pnp.h"
 #include "map/local_map.h"
 #include "optimization/pose_optimizer.h"
@@ -29,7 +30,7 @@ struct AcceptanceOptions {
           "share of the parts of the image, with keypoints and map points, where some agree");
     visit("min_spread", self.min_spread, {0, 1}, "",
           "their deviation along the narrowest direction, relative to the image's diagonal");
-    visit("min_confidence", self.min_confidence, {0, 1}, "",
+    visit(for_users("min_confidence"), self.min_confidence, {0, 1}, "",
           "probability of being right, by the calibration");
   }
 };
@@ -55,8 +56,8 @@ struct ConsensusOptions {
           "of a weak pose: map points that agree with it");
     visit("min_coverage", self.min_coverage, {0, 1}, "", "of a weak pose, as for acceptance");
     visit("max_gap", self.max_gap, {0.001, 60}, "s", "longest time between two of them");
-    visit("max_speed", self.max_speed, {0, 100}, "m/s", "how fast the camera may move");
-    visit("max_turn", self.max_turn, {0, 3600}, "degrees/s", "how fast it may turn");
+    visit(for_users("max_speed"), self.max_speed, {0, 100}, "m/s", "how fast the camera may move");
+    visit(for_users("max_turn"), self.max_turn, {0, 3600}, "degrees/s", "how fast it may turn");
     visit("distance_slack", self.distance_slack, {0, 10}, "m", "error of a weak pose");
     visit("angle_slack", self.angle_slack, {0, 180}, "degrees", "the same of its direction");
   }
@@ -116,6 +117,17 @@ struct RelocalizationOptions {
     visit.group("pose", self.pose);
     visit.group("acceptance", self.acceptance);
     visit.group("consensus", self.consensus);
+  }
+  template <class Checker>
+  void relate(const Checker& check) const {
+    check.at_most("narrow_radius", narrow_radius, "wide_radius", wide_radius);
+    // What is weak alone needs less than what is believed alone.
+    check.at_most("consensus.min_matched", consensus.min_matched, "acceptance.min_matched",
+                  acceptance.min_matched);
+    check.at_most("consensus.min_inliers", consensus.min_inliers, "acceptance.min_inliers",
+                  acceptance.min_inliers);
+    check.at_most("consensus.min_coverage", consensus.min_coverage, "acceptance.min_coverage",
+                  acceptance.min_coverage);
   }
 };
 

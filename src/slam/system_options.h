@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/options.h"
 #include "features/extractor_options.h"
 #include "loop_closing/loop_closer.h"
 #include "mapping/mapping_options.h"
@@ -35,24 +36,27 @@ struct SystemOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit("features", self.features, "",
+    visit(for_users("features"), self.features, "",
           "extractor name or manifest file; auto: the best installed");
-    visit("mode", self.mode, "",
+    visit(for_users("mode"), self.mode, "",
           "slam, or localization: poses in a given map, which stays as it is");
-    visit("vocabulary", self.vocabulary, "",
+    visit(for_users("vocabulary"), self.vocabulary, "",
           "file; auto: the one shipped for the features; none: loops by global descriptor alone");
-    visit("close_loops", self.close_loops, "", "look for loops and correct the map by them");
+    visit(for_users("close_loops"), self.close_loops, "",
+          "look for loops and correct the map by them");
     visit(
         "loop_relaxation", self.loop_relaxation, {1, 10}, "",
         "factor that loosens the thresholds of loop_detection; geometry has the last word anyway");
-    visit("new_map_after", self.new_map_after, {1, 1000000}, "frames",
+    visit(for_users("new_map_after"), self.new_map_after, {1, 1000000}, "frames",
           "lost in a row, with things to see, before a new map is begun beside the old one (slam)");
-    visit("deterministic", self.deterministic, "",
+    visit(for_users("deterministic"), self.deterministic, "",
           "one thread and exact arithmetic: repeatable to the bit");
-    visit("queued_frames", self.queued_frames, {1, 1000}, "frames", "most that wait to be tracked");
-    visit("queued_keyframes", self.queued_keyframes, {1, 1000}, "keyframes",
+    visit(for_users("queued_frames"), self.queued_frames, {1, 1000}, "frames",
+          "most that wait to be tracked");
+    visit(for_users("queued_keyframes"), self.queued_keyframes, {1, 1000}, "keyframes",
           "most keyframes that wait for mapping");
-    visit("final_bundle", self.final_bundle, "", "adjust the whole map once more at the end");
+    visit(for_users("final_bundle"), self.final_bundle, "",
+          "adjust the whole map once more at the end");
     visit.group("full_bundle", self.full_bundle);
     visit.group("extractor", self.extractor);
     visit.group("tracking", self.tracking);

@@ -26,15 +26,15 @@ namespace fs = std::filesystem;
 /// Visitor that puts the described options into a JSON object.
 class JsonVisitor {
  public:
-  void operator()(const char* name, const bool& value, const char*, const char*) {
-    json[name] = value;
+  void operator()(OptionName name, const bool& value, const char*, const char*) {
+    json[name.text] = value;
   }
-  void operator()(const char* name, const std::string& value, const char*, const char*) {
-    json[name] = value;
+  void operator()(OptionName name, const std::string& value, const char*, const char*) {
+    json[name.text] = value;
   }
   template <class Number>
-  void operator()(const char* name, const Number& value, Range, const char*, const char*) {
-    json[name] = value;
+  void operator()(OptionName name, const Number& value, Range, const char*, const char*) {
+    json[name.text] = value;
   }
   template <class Options>
   void group(const char* name, const Options& options) {

@@ -24,7 +24,6 @@ float median_depth(const Frame& frame) {
 
 bool is_keyframe_due(const KeyframeEvidence& evidence, const Frame& frame,
                      const KeyframeOptions& options) {
-  if (evidence.frames_since_keyframe < options.min_gap) return false;
   const double angle =
       rotation_angle(evidence.reference_from_camera, SE3()) * 180.0 / std::numbers::pi;
   const double depth = std::max(0.3, static_cast<double>(median_depth(frame)));

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include "core/options.h"
 #include "geometry/pnp.h"
 #include "optimization/pose_optimizer.h"
 
@@ -9,7 +10,6 @@ namespace dxslam {
 
 /// When a frame becomes a keyframe.
 struct KeyframeOptions {
-  int min_gap = 1;
   int max_gap = 30;
   double min_tracked_ratio = 0.85;
   double max_rotation = 10.0;
@@ -17,14 +17,13 @@ struct KeyframeOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit("min_gap", self.min_gap, {1, 1000}, "frames", "fewest frames between two keyframes");
-    visit("max_gap", self.max_gap, {1, 100000}, "frames",
+    visit(for_users("max_gap"), self.max_gap, {1, 100000}, "frames",
           "after so many frames any motion makes a keyframe");
     visit("min_tracked_ratio", self.min_tracked_ratio, {0, 1}, "",
           "share of the most points tracked since the last keyframe below which one is due");
-    visit("max_rotation", self.max_rotation, {0.1, 180}, "degrees",
+    visit(for_users("max_rotation"), self.max_rotation, {0.1, 180}, "degrees",
           "turn against the reference keyframe that makes a keyframe due");
-    visit("max_translation", self.max_translation, {0.001, 10}, "",
+    visit(for_users("max_translation"), self.max_translation, {0.001, 10}, "",
           "move against the reference keyframe, relative to the median depth");
   }
 };
@@ -53,7 +52,7 @@ struct TrackerOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit("min_start_points", self.min_start_points, {10, 100000}, "points",
+    visit(for_users("min_start_points"), self.min_start_points, {10, 100000}, "points",
           "keypoints with depth that the first frame needs");
     visit("min_inliers", self.min_inliers, {6, 1000}, "points", "fewer mean that tracking is lost");
     visit("search_radius", self.search_radius, {1, 500}, "pixels at 640 wide",
@@ -88,6 +87,13 @@ struct TrackerOptions {
     visit.group("keyframe", self.keyframe);
     visit.group("pose", self.pose);
     visit.group("pnp", self.pnp);
+  }
+  template <class Checker>
+  void relate(const Checker& check) const {
+    check.at_most("narrow_radius", narrow_radius, "search_radius", search_radius);
+    check.at_most("weak_agreement", weak_agreement, "fair_agreement", fair_agreement);
+    check.at_most("fair_agreement", fair_agreement, "good_agreement", good_agreement);
+    check.at_most("min_quick_inliers", min_quick_inliers, "quick_keypoints", quick_keypoints);
   }
 };
 

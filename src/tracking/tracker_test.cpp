@@ -227,16 +227,30 @@ TEST(Tracker, UndoesTheRollingShutter) {
   EXPECT_LT(undone, 0.3 * ignored);
 }
 
-TEST(TrackerOptions, NameTheFieldThatIsOutOfRange) {
+std::string refusal(const TrackerOptions& options) {
   const PointScene scene(10);
-  TrackerOptions options;
-  options.keyframe.min_gap = 0;
   try {
     const Tracker tracker(scene.camera(), scene.traits(), options);
-    FAIL();
   } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(), "option tracking.keyframe.min_gap is 0 frames, expected 1 to 1000");
+    return e.what();
   }
+  return "";
+}
+
+TEST(TrackerOptions, NameTheFieldThatIsOutOfRange) {
+  TrackerOptions options;
+  options.keyframe.max_gap = 0;
+  EXPECT_EQ(refusal(options), "option tracking.keyframe.max_gap is 0 frames, expected 1 to 100000");
+}
+
+TEST(TrackerOptions, MustFitEachOther) {
+  TrackerOptions options;
+  options.weak_agreement = options.fair_agreement = options.good_agreement;
+  EXPECT_EQ(refusal(options), "");
+  options.weak_agreement = 0.5;
+  EXPECT_EQ(refusal(options),
+            "option tracking.weak_agreement is 0.5, expected at most tracking.fair_agreement, "
+            "which is 0.4");
 }
 
 }  // namespace

@@ -14,15 +14,27 @@
 namespace dxslam::apps {
 namespace {
 
-void dump(const std::string& camera) {
-  if (!camera.empty()) {
-    print_text(camera_preset_text(camera));
+struct DumpArguments {
+  std::string camera;
+  bool all = false;
+};
+
+void dump(const DumpArguments& arguments) {
+  if (!arguments.camera.empty()) {
+    print_text(camera_preset_text(arguments.camera));
     return;
   }
+  OptionsYamlWriter writer(arguments.all ? OptionsFor::kExperts : OptionsFor::kUsers);
+  const SystemOptions defaults;
+  SystemOptions::describe(defaults, writer);
   print_text(fmt::format(
       "# The default configuration of dxslam {}. Give a file with the lines to change to\n"
-      "# dxslam run --config; what it leaves out keeps its default.\n{}",
-      DXSLAM_VERSION, dump_options_yaml(SystemOptions{})));
+      "# dxslam run --config; what it leaves out keeps its default.\n{}{}",
+      DXSLAM_VERSION,
+      arguments.all ? ""
+                    : fmt::format("# {} more options, for experts: dxslam config dump --all\n",
+                                  writer.left_out()),
+      writer.text()));
 }
 
 }  // namespace
@@ -32,12 +44,13 @@ void add_config_command(CLI::App& app) {
   config->require_subcommand(1);
   CLI::App* command = config->add_subcommand(
       "dump", "print the default configuration, or a camera preset, as YAML");
-  const auto camera = std::make_shared<std::string>();
+  const auto arguments = std::make_shared<DumpArguments>();
+  command->add_flag("--all", arguments->all, "the options for experts as well");
   command
-      ->add_option("--camera", *camera,
+      ->add_option("--camera", arguments->camera,
                    fmt::format("camera preset: {}", fmt::join(camera_preset_names(), ", ")))
       ->option_text("NAME");
-  command->callback([camera] { dump(*camera); });
+  command->callback([arguments] { dump(*arguments); });
 }
 
 }  // namespace dxslam::apps

@@ -29,35 +29,42 @@ std::string limits_of(Range range, const char* unit) {
 
 }  // namespace
 
-void OptionsYamlWriter::open_group(const char* name) {
+void OptionsYamlWriter::add_group(const char* name, const OptionsYamlWriter& nested) {
+  written_ += nested.written_;
+  left_out_ += nested.left_out_;
+  if (nested.written_ == 0) return;
   if (depth_ == 0 && !text_.empty()) text_ += '\n';
-  text_ += fmt::format("{:{}}{}:\n", "", 2 * depth_, name);
-  ++depth_;
+  text_ += fmt::format("{:{}}{}:\n{}", "", 2 * depth_, name, nested.text_);
 }
 
-void OptionsYamlWriter::operator()(const char* name, const bool& value, const char* unit,
+void OptionsYamlWriter::operator()(OptionName name, const bool& value, const char* unit,
                                    const char* meaning) {
   add_line(name, value ? "true" : "false", unit, meaning);
 }
 
-void OptionsYamlWriter::operator()(const char* name, const std::string& value, const char* unit,
+void OptionsYamlWriter::operator()(OptionName name, const std::string& value, const char* unit,
                                    const char* meaning) {
   add_line(name, quote_yaml(value), unit, meaning);
 }
 
-void OptionsYamlWriter::add_integer(const char* name, long long value, Range range,
-                                    const char* unit, const char* meaning) {
+void OptionsYamlWriter::add_integer(OptionName name, long long value, Range range, const char* unit,
+                                    const char* meaning) {
   add_line(name, fmt::format("{}", value), limits_of(range, unit), meaning);
 }
 
-void OptionsYamlWriter::add_number(const char* name, double value, Range range, const char* unit,
+void OptionsYamlWriter::add_number(OptionName name, double value, Range range, const char* unit,
                                    const char* meaning) {
   add_line(name, fmt::format("{}", value), limits_of(range, unit), meaning);
 }
 
-void OptionsYamlWriter::add_line(const char* name, const std::string& value,
+void OptionsYamlWriter::add_line(OptionName name, const std::string& value,
                                  const std::string& limits, const char* meaning) {
-  std::string line = fmt::format("{:{}}{}: {}", "", 2 * depth_, name, value);
+  if (reader_ == OptionsFor::kUsers && !name.for_users) {
+    ++left_out_;
+    return;
+  }
+  ++written_;
+  std::string line = fmt::format("{:{}}{}: {}", "", 2 * depth_, name.text, value);
   line.resize(std::max(line.size() + 2, kCommentColumn), ' ');
   text_ += fmt::format("{}# {}{}{}{}\n", line, meaning, limits.empty() ? "" : " (", limits,
                        limits.empty() ? "" : ")");

@@ -18,20 +18,20 @@ class OptionsYamlReader {
  public:
   explicit OptionsYamlReader(YamlMap& map) : map_(map) {}
 
-  void operator()(const char* name, bool& value, const char*, const char*) {
-    map_.take(name, value);
+  void operator()(OptionName name, bool& value, const char*, const char*) {
+    map_.take(name.text, value);
   }
-  void operator()(const char* name, std::string& value, const char*, const char*) {
-    map_.take(name, value);
+  void operator()(OptionName name, std::string& value, const char*, const char*) {
+    map_.take(name.text, value);
   }
   template <class Number>
-  void operator()(const char* name, Number& value, Range range, const char* unit, const char*) {
+  void operator()(OptionName name, Number& value, Range range, const char* unit, const char*) {
     if constexpr (std::is_integral_v<Number>) {
       long long whole = 0;
-      if (map_.take_integer(name, whole, range, unit)) value = static_cast<Number>(whole);
+      if (map_.take_integer(name.text, whole, range, unit)) value = static_cast<Number>(whole);
     } else {
       double number = 0.0;
-      if (map_.take(name, number, range, unit)) value = static_cast<Number>(number);
+      if (map_.take(name.text, number, range, unit)) value = static_cast<Number>(number);
     }
   }
   template <class Options>
@@ -47,14 +47,18 @@ class OptionsYamlReader {
   YamlMap& map_;
 };
 
+/// Which options are written: those that users set, or the experts' as well.
+enum class OptionsFor { kUsers, kExperts };
+
 /// Visitor that writes each described field as "name: value  # meaning (unit, range)".
 class OptionsYamlWriter {
  public:
-  void operator()(const char* name, const bool& value, const char* unit, const char* meaning);
-  void operator()(const char* name, const std::string& value, const char* unit,
-                  const char* meaning);
+  explicit OptionsYamlWriter(OptionsFor reader) : reader_(reader) {}
+
+  void operator()(OptionName name, const bool& value, const char* unit, const char* meaning);
+  void operator()(OptionName name, const std::string& value, const char* unit, const char* meaning);
   template <class Number>
-  void operator()(const char* name, const Number& value, Range range, const char* unit,
+  void operator()(OptionName name, const Number& value, Range range, const char* unit,
                   const char* meaning) {
     if constexpr (std::is_integral_v<Number>) {
       add_integer(name, static_cast<long long>(value), range, unit, meaning);
@@ -64,23 +68,30 @@ class OptionsYamlWriter {
   }
   template <class Options>
   void group(const char* name, const Options& options) {
-    open_group(name);
-    Options::describe(options, *this);
-    --depth_;
+    OptionsYamlWriter nested(reader_);
+    nested.depth_ = depth_ + 1;
+    Options::describe(options, nested);
+    add_group(name, nested);
   }
   const std::string& text() const { return text_; }
+  /// Options written, and left out.
+  int written() const { return written_; }
+  int left_out() const { return left_out_; }
 
  private:
-  void open_group(const char* name);
-  void add_integer(const char* name, long long value, Range range, const char* unit,
+  void add_group(const char* name, const OptionsYamlWriter& nested);
+  void add_integer(OptionName name, long long value, Range range, const char* unit,
                    const char* meaning);
-  void add_number(const char* name, double value, Range range, const char* unit,
+  void add_number(OptionName name, double value, Range range, const char* unit,
                   const char* meaning);
-  void add_line(const char* name, const std::string& value, const std::string& limits,
+  void add_line(OptionName name, const std::string& value, const std::string& limits,
                 const char* meaning);
 
+  OptionsFor reader_;
   std::string text_;
   int depth_ = 0;
+  int written_ = 0;
+  int left_out_ = 0;
 };
 
 /// Overwrites the fields of `options` that `text` gives. Throws InputError naming file and line for
@@ -103,7 +114,7 @@ Options load_options(const std::string& path, Options defaults = {}) {
 /// All fields with unit, range and meaning as comments; reading it back gives the same options.
 template <class Options>
 std::string dump_options_yaml(const Options& options) {
-  OptionsYamlWriter writer;
+  OptionsYamlWriter writer(OptionsFor::kExperts);
   Options::describe(options, writer);
   return writer.text();
 }

@@ -14,7 +14,16 @@ struct InnerOptions {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("iterations", self.iterations, {1, 100}, "steps", "how many");
-    visit("ratio", self.ratio, {0, 1}, "", "how much");
+    visit(for_users("ratio"), self.ratio, {0, 1}, "", "how much");
+  }
+};
+
+struct ExpertOptions {
+  int steps = 5;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit("steps", self.steps, {1, 100}, "steps", "how many");
   }
 };
 
@@ -23,13 +32,15 @@ struct OuterOptions {
   std::string name = "a \"quoted\" \\ name\n";
   float radius = 0.1F;
   InnerOptions inner;
+  ExpertOptions expert;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit("fast", self.fast, "", "whether");
+    visit(for_users("fast"), self.fast, "", "whether");
     visit("name", self.name, "", "who");
     visit("radius", self.radius, {0, 10}, "m", "how far");
     visit.group("inner", self.inner);
+    visit.group("expert", self.expert);
   }
 };
 
@@ -59,6 +70,19 @@ TEST(OptionsYaml, DumpReadsBackToTheSame) {
   EXPECT_EQ(again.name, options.name);
   EXPECT_EQ(dump_options_yaml(again), text);
   EXPECT_THAT(text, testing::HasSubstr("# how many (steps, 1 to 100)"));
+}
+
+TEST(OptionsYaml, UsersSeeTheirOptionsAlone) {
+  const OuterOptions options;
+  OptionsYamlWriter writer(OptionsFor::kUsers);
+  OuterOptions::describe(options, writer);
+  EXPECT_EQ(writer.text(),
+            "fast: true                          # whether\n\n"
+            "inner:\n"
+            "  ratio: 0.75                       # how much (0 to 1)\n");
+  EXPECT_EQ(writer.written(), 2);
+  EXPECT_EQ(writer.left_out(), 4);
+  EXPECT_EQ(read(writer.text()).inner.ratio, options.inner.ratio);
 }
 
 TEST(OptionsYaml, RefusesUnknownKeysWithTheNearestName) {
