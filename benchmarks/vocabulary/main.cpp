@@ -17,7 +17,6 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "growth_plot.h"
 #include "io/primitives/atomic_file.h"
 #include "vocabulary/bow_database.h"
 #include "vocabulary/vocabulary.h"
@@ -33,7 +32,6 @@ constexpr int kDescriptors = 1000;  // of one image
 // Words drawn for an image: real ones with 1000 descriptors have 660 to 690 different words, as
 // many descriptors of one image are alike.
 constexpr int kDraws = 720;
-constexpr double kQueryLimitMs = 20.0;
 
 // Milliseconds that this thread has computed, or that have passed. They are the same on an idle
 // machine; on a busy one the first still says what the work costs.
@@ -192,6 +190,15 @@ class ImageSource {
   std::discrete_distribution<WordId> word_;
 };
 
+// Of a database of one size, in ms of one core's work unless said otherwise.
+struct QueryTimes {
+  std::size_t keyframes = 0;
+  double median_ms = 0.0;
+  double p95_ms = 0.0;
+  double max_ms = 0.0;
+  double median_wall_ms = 0.0;  // as passed on the clock
+};
+
 QueryTimes time_queries(const BowDatabase& database, ImageSource& source) {
   constexpr int kQueries = 60;
   const auto last = static_cast<std::uint32_t>(database.size());
@@ -208,9 +215,9 @@ QueryTimes time_queries(const BowDatabase& database, ImageSource& source) {
           quantile(times.cpu, 1.0), quantile(times.wall, 0.5)};
 }
 
-Growth time_database(WordId words, std::size_t keyframes) {
-  Growth growth;
-  growth.label = fmt::format("vocabulary of {} words", words);
+// By rising number of keyframes.
+std::vector<QueryTimes> time_database(WordId words, std::size_t keyframes) {
+  std::vector<QueryTimes> sizes;
   ImageSource source(words, 7);
   BowDatabase database;
   std::size_t postings = 0;
@@ -219,24 +226,23 @@ Growth time_database(WordId words, std::size_t keyframes) {
     postings += image.words.size();
     database.add(static_cast<std::uint32_t>(i), image);
     if ((i + 1) % (keyframes / 20) != 0) continue;
-    growth.sizes.push_back(time_queries(database, source));
+    sizes.push_back(time_queries(database, source));
   }
-  const QueryTimes& last = growth.sizes.back();
+  const QueryTimes& last = sizes.back();
   fmt::print(
-      "{}, {} keyframes of {:.0f} words: median {:.2f} ms CPU ({:.2f} ms wall), 95 % {:.2f} ms, "
+      "vocabulary of {} words, {} keyframes of {:.0f} words: median {:.2f} ms CPU ({:.2f} ms "
+      "wall), 95 % {:.2f} ms, "
       "max {:.2f} ms\n",
-      growth.label, last.keyframes, static_cast<double>(postings) / static_cast<double>(keyframes),
+      words, last.keyframes, static_cast<double>(postings) / static_cast<double>(keyframes),
       last.median_ms, last.median_wall_ms, last.p95_ms, last.max_ms);
-  return growth;
+  return sizes;
 }
 
 void run(const std::string& folder, std::size_t keyframes) {
   std::filesystem::create_directories(folder);
   nlohmann::ordered_json report{{"vocabulary", time_vocabulary(folder)}};
-  std::vector<Growth> experiments;
   for (const WordId words : {10000U, 100000U}) {
-    experiments.push_back(time_database(words, keyframes));
-    for (const QueryTimes& times : experiments.back().sizes) {
+    for (const QueryTimes& times : time_database(words, keyframes)) {
       report["database"][std::to_string(words)].push_back({{"keyframes", times.keyframes},
                                                            {"median_ms", times.median_ms},
                                                            {"median_wall_ms", times.median_wall_ms},
@@ -245,10 +251,6 @@ void run(const std::string& folder, std::size_t keyframes) {
     }
   }
   write_file_atomically(folder + "/summary.json", report.dump(2) + "\n");
-  write_file_atomically(
-      folder + "/database.svg",
-      draw_growth_svg(experiments, kQueryLimitMs, "Time of a query in the BoW database",
-                      "ten best of all keyframes, one core; medians and (dashed) 95 % of 60"));
 }
 
 }  // namespace
