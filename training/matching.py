@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .data import Frame, lift, load_frame, project
 from .graphs import BLOCKS, FEATURES, INPUT_STEP
+from .inference import compile_on_cpu
 from .teacher import sample
 
 Array = NDArray[np.float32]
@@ -70,16 +71,13 @@ class Network:
     EdgePoint2 file."""
 
     def __init__(self, path: Path, threads: int = 2) -> None:
-        self._options = {"INFERENCE_NUM_THREADS": threads, "INFERENCE_PRECISION_HINT": "f32"}
-        self.model = self._compile(path)
+        self.model = compile_on_cpu(path, threads=threads)
         head = path.with_name(path.name.replace("hfnet", "hfnet_global"))
         self.names = [output.any_name for output in self.model.outputs]
-        self.head = self._compile(head) if FEATURES in self.names and head != path and head.exists() else None
+        has_head = FEATURES in self.names and head != path and head.exists()
+        self.head = compile_on_cpu(head, threads=threads) if has_head else None
         self.is_teacher = "score" in self.names
         self.has_global = self.head is not None or "global_descriptor" in self.names
-
-    def _compile(self, path: Path) -> ov.CompiledModel:
-        return ov.Core().compile_model(str(path), "CPU", self._options)
 
     def __call__(self, grey: NDArray[np.uint8]) -> dict[str, Array]:
         """Outputs by name, but for a separate head's."""

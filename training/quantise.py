@@ -29,6 +29,7 @@ from .graphs import (
     integer_features,
     integer_input,
 )
+from .inference import compile_on_cpu
 from .matching import blocks_of
 from .rounding import round_weights
 
@@ -100,7 +101,7 @@ def main() -> None:
     local, head = cut_local(whole), cut_head(whole)
     small_local = quantised(local, blocks, [])
     round_weights(small_local, local, blocks[::2])
-    run = ov.Core().compile_model(small_local, "CPU", {"INFERENCE_PRECISION_HINT": "f32"})
+    run = compile_on_cpu(small_local)
     features = [np.array(run([b])[FEATURES]) for b in blocks[::2]]
     small_head = quantised(head, features, tail_nodes(head))
     round_weights(small_head, head, features)

@@ -12,6 +12,8 @@ import openvino as ov
 from numpy.typing import NDArray
 from openvino import opset13 as ops
 
+from .inference import compile_on_cpu
+
 Array = NDArray[np.float64]
 TOP = 127
 DAMPING = 1e-3  # share of the mean second moment; as if inputs had independent noise
@@ -50,7 +52,7 @@ def second_moments(model: ov.Model, convolution: ov.Node, inputs: list[NDArray])
     """Of what the convolution reads, over random positions of the inputs."""
     size = convolution.input_value(1).get_partial_shape()[2].get_length()
     cut = ov.Model([ops.result(convolution.input_value(0))], model.get_parameters(), "cut")
-    run = ov.Core().compile_model(cut, "CPU", {"INFERENCE_PRECISION_HINT": "f32"})
+    run = compile_on_cpu(cut)
     rng = np.random.default_rng(0)
     total = 0.0
     for image in inputs:

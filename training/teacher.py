@@ -11,6 +11,8 @@ import numpy as np
 import openvino as ov
 from numpy.typing import NDArray
 
+from .inference import compile_on_cpu
+
 Array = NDArray[np.float32]
 DUSTBIN = 64
 
@@ -29,11 +31,9 @@ class LocalTeacher:
     """EdgePoint2 at a fixed batch and crop size; bf16 gives the same keypoints (496 of 500) at half the time."""
 
     def __init__(self, model: Path, batch: int, height: int, width: int, precision: str = "bf16") -> None:
-        core = ov.Core()
-        graph = core.read_model(str(model))
+        graph = ov.Core().read_model(str(model))
         graph.reshape([batch, 1, height, width])
-        options = {"INFERENCE_NUM_THREADS": 1, "INFERENCE_PRECISION_HINT": precision}
-        compiled = core.compile_model(graph, "CPU", options)
+        compiled = compile_on_cpu(graph, precision, threads=1)
         names = [output.any_name for output in compiled.outputs]
         self._descriptors, self._scores = names.index("desc"), names.index("score")
         self._request = compiled.create_infer_request()
