@@ -15,6 +15,7 @@
 #include "core/test_camera.h"
 #include "geometry/alignment.h"
 #include "map/map.h"
+#include "map/test_frame.h"
 
 namespace dxslam {
 
@@ -75,26 +76,18 @@ class RingScene {
   /// Keypoints of all points in view, with pixel noise and depth; `sources` receives the point
   /// behind each keypoint.
   FramePtr frame(std::int64_t index, double metres, std::vector<int>& sources, double noise = 0.3) {
-    auto frame = std::make_shared<Frame>();
-    frame->index = index;
-    frame->stamp = static_cast<double>(index) / 30.0;
+    auto frame = empty_test_frame(index);
     sources.clear();
     std::normal_distribution<double> normal(0.0, noise);
     const SE3 camera_from_ring = on_ring(metres).inverse();
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const double apart = std::remainder(angles_[i] - metres / radius_, 2.0 * std::numbers::pi);
       if (std::abs(apart) * radius_ > 4.0) continue;
-      const Eigen::Vector3d p = camera_from_ring * points_[i];
-      if (p.z() < 0.3) continue;
-      const Eigen::Vector2d pixel =
-          camera_.project(p) + Eigen::Vector2d(normal(generator_), normal(generator_));
-      if (!camera_.contains(pixel)) continue;
-      frame->pixels.push_back(pixel.cast<float>());
-      frame->depths.push_back(static_cast<float>(p.z()));
-      frame->scores.push_back(1.0F);
-      frame->sigmas.push_back(1.0F);
-      frame->descriptors.push_back(descriptors_.row(static_cast<int>(i)));
-      sources.push_back(static_cast<int>(i));
+      const auto offset = [&] { return Eigen::Vector2d(normal(generator_), normal(generator_)); };
+      if (add_test_keypoint(camera_, camera_from_ring * points_[i], offset,
+                            descriptors_.row(static_cast<int>(i)), *frame)) {
+        sources.push_back(static_cast<int>(i));
+      }
     }
     return frame;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <opencv2/core.hpp>
 #include <random>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "core/random_unit.h"
 #include "core/se3.h"
 #include "core/test_camera.h"
+#include "map/map.h"
+#include "map/test_frame.h"
 
 namespace dxslam {
 
@@ -42,23 +45,19 @@ class PointScene {
   /// `source` (if given) receives the point behind each keypoint.
   FramePtr frame(std::int64_t index, const SE3& world_from_camera, double noise = 0.3,
                  double depth_share = 0.8, std::vector<int>* source = nullptr) {
-    auto frame = std::make_shared<Frame>();
-    frame->index = index;
-    frame->stamp = static_cast<double>(index) / 30.0;
+    auto frame = empty_test_frame(index);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
     const SE3 camera_from_world = world_from_camera.inverse();
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const Eigen::Vector3d p = camera_from_world * points_[i];
-      if (p.z() < 0.3) continue;
-      const Eigen::Vector2d pixel =
-          camera_.project(p) + noise * Eigen::Vector2d(normal(generator_), normal(generator_));
-      if (!camera_.contains(pixel)) continue;
-      frame->pixels.emplace_back(pixel.cast<float>());
-      frame->depths.push_back(uniform(generator_) < depth_share ? static_cast<float>(p.z()) : 0.0F);
-      frame->scores.push_back(1.0F);
-      frame->sigmas.push_back(1.0F);
-      frame->descriptors.push_back(descriptors_.row(static_cast<int>(i)));
+      const auto offset = [&]() -> Eigen::Vector2d {
+        return noise * Eigen::Vector2d(normal(generator_), normal(generator_));
+      };
+      if (!add_test_keypoint(camera_, camera_from_world * points_[i], offset,
+                             descriptors_.row(static_cast<int>(i)), *frame)) {
+        continue;
+      }
+      if (uniform(generator_) >= depth_share) frame->depths.back() = 0.0F;
       if (source != nullptr) source->push_back(static_cast<int>(i));
     }
     return frame;
@@ -72,5 +71,22 @@ class PointScene {
   std::vector<Eigen::Vector3d> points_;
   cv::Mat descriptors_;
 };
+
+/// Makes each keypoint of a keyframe an observation of the map point that stands for its point of
+/// the scene; `point_of` knows those that there are, and gets the new ones.
+inline void bind_to_points(KeyframeId keyframe, const std::vector<int>& source,
+                           const PointScene& scene, const SE3& world_from_scene,
+                           std::map<int, PointId>& point_of, Map& map) {
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const auto keypoint = static_cast<std::uint32_t>(i);
+    const auto it = point_of.find(source[i]);
+    if (it != point_of.end()) {
+      map.add_observation(it->second, keyframe, keypoint);
+      continue;
+    }
+    const Eigen::Vector3d& point = scene.points()[static_cast<std::size_t>(source[i])];
+    point_of[source[i]] = map.add_point(world_from_scene * point, keyframe, keypoint);
+  }
+}
 
 }  // namespace dxslam

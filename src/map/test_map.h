@@ -25,16 +25,7 @@ struct BuiltMap {
       const FramePtr frame = scene.frame(k, pose, 0.0, 1.0, &source);
       const KeyframeId id =
           map.add_keyframe(frame, pose, k == 0 ? kNoId : static_cast<KeyframeId>(k - 1));
-      for (std::size_t i = 0; i < source.size(); ++i) {
-        const auto keypoint = static_cast<std::uint32_t>(i);
-        const auto it = point_of.find(source[i]);
-        if (it == point_of.end()) {
-          point_of[source[i]] =
-              map.add_point(scene.points()[static_cast<std::size_t>(source[i])], id, keypoint);
-        } else {
-          EXPECT_TRUE(map.add_observation(it->second, id, keypoint));
-        }
-      }
+      bind_to_points(id, source, scene, SE3(), point_of, map);
     }
   }
   PointScene scene{400};

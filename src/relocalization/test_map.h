@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
 #include "map/map.h"
@@ -28,7 +28,7 @@ inline FramePtr with_global(const FramePtr& frame, std::vector<float> global) {
 inline std::vector<KeyframeId> add_scene(PointScene& scene, int count, double place,
                                          const SE3& world_from_scene, Map& map) {
   std::vector<KeyframeId> ids;
-  std::unordered_map<int, PointId> point_of;
+  std::map<int, PointId> point_of;
   for (int i = 0; i < count; ++i) {
     const SE3 pose = PointScene::pose(static_cast<double>(i) / count);
     std::vector<int> source;
@@ -36,16 +36,7 @@ inline std::vector<KeyframeId> add_scene(PointScene& scene, int count, double pl
     const KeyframeId id =
         map.add_keyframe(with_global(frame, global_at(place + 0.02 * i)), world_from_scene * pose,
                          ids.empty() ? kNoId : ids.back());
-    for (std::size_t k = 0; k < source.size(); ++k) {
-      const auto it = point_of.find(source[k]);
-      if (it != point_of.end()) {
-        map.add_observation(it->second, id, static_cast<std::uint32_t>(k));
-        continue;
-      }
-      const Eigen::Vector3d position =
-          world_from_scene * scene.points()[static_cast<std::size_t>(source[k])];
-      point_of[source[k]] = map.add_point(position, id, static_cast<std::uint32_t>(k));
-    }
+    bind_to_points(id, source, scene, world_from_scene, point_of, map);
     ids.push_back(id);
   }
   for (const auto& entry : point_of) map.refresh_point(entry.second);
