@@ -40,15 +40,21 @@ def poses(file):
 class Recorded(unittest.TestCase):
     """Tests that share one small synthetic recording, which they must not change."""
 
+    frames, seed = FRAMES, 7
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory(prefix="dxslam_cli_")
         cls.addClassCleanup(folder.cleanup)
         cls.folder = Path(folder.name)
         cls.recording = cls.folder / "recording"
-        done = dxslam("synth", cls.recording, "--frames", FRAMES, "--seed", 7)
+        cls.prepare("synth", cls.recording, "--frames", cls.frames, "--seed", cls.seed)
+
+    @staticmethod
+    def prepare(*command):
+        done = dxslam(*command)
         if done.returncode:
-            raise RuntimeError(f"dxslam synth: exit {done.returncode}: {done.stderr}")
+            raise RuntimeError(f"dxslam {command[0]}: exit {done.returncode}: {done.stderr}")
 
     def run_orb(self, out, *options, recording=None):
         return dxslam("run", recording or self.recording, "--features", "orb", "--out", out,

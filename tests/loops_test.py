@@ -5,43 +5,27 @@
 import csv
 import json
 import shutil
-import tempfile
 import unittest
-from pathlib import Path
 
-from cli_test import BAD_INPUT, BAD_USAGE, dxslam
+from cli_test import BAD_USAGE, Recorded, dxslam
 
 FRAMES = 40
 
 
-class Loops(unittest.TestCase):
+class Loops(Recorded):
+    frames = FRAMES
+
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="dxslam_loops_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
-        cls.recording, cls.words = cls.folder / "recording", cls.folder / "orb.fbow"
-        for command in (["synth", cls.recording, "--frames", FRAMES, "--seed", 7],
-                        ["vocab", "train", cls.recording, "--method", "kmeans", "--words", 200,
-                         "--features", "orb", "--out", cls.words]):
-            done = dxslam(*command)
-            if done.returncode:
-                raise RuntimeError(f"dxslam {command[0]}: exit {done.returncode}: {done.stderr}")
+        super().setUpClass()
+        cls.words = cls.folder / "orb.fbow"
+        cls.prepare("vocab", "train", cls.recording, "--method", "kmeans", "--words", 200,
+                    "--features", "orb", "--out", cls.words)
 
     def loops(self, *options, recording=None, truth="poses", method="orb-bow", words=None):
         return dxslam("loops", recording or self.recording, "--ground-truth", truth, "--method",
                       method, "--orb-vocabulary", words or self.words, "--window", 0.3, "--radius", 0.5,
                       *options)
-
-    def succeed(self, done):
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
-
-    def refuse(self, done, *parts):
-        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
-        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        for part in parts:
-            self.assertIn(part, done.stderr)
 
     def test_writes_candidates_curve_and_summary(self):
         out = self.folder / "one"

@@ -14,50 +14,28 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
-from cli_test import BAD_INPUT, BAD_USAGE, PROGRAM, ROOT, dxslam
+from cli_test import BAD_USAGE, PROGRAM, ROOT, Recorded, dxslam
 
 FIRST_VERSION = ROOT / "tests" / "data" / "map_v1.dxmap"
 FRAMES = 40
 KILLS = 40
 
 
-class Saved(unittest.TestCase):
+class Saved(Recorded):
     """Tests that share the maps of two parts of one small synthetic recording."""
+
+    frames = FRAMES
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="dxslam_map_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
-        recording = cls.folder / "recording"
-        cls.check(dxslam("synth", recording, "--frames", FRAMES, "--seed", 7))
+        super().setUpClass()
         cls.first, cls.second = cls.folder / "first.dxmap", cls.folder / "second.dxmap"
         for file, frames in ((cls.first, FRAMES), (cls.second, FRAMES // 2)):
-            cls.check(dxslam("run", recording, "--features", "orb", "--max-frames", frames,
-                             "--map-out", file, "--out", cls.folder / f"{file.stem}_run"))
-
-    @staticmethod
-    def check(done):
-        if done.returncode:
-            raise RuntimeError(f"exit {done.returncode}: {done.stderr}")
-        return done
-
-    def succeed(self, done):
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
-
-    def refuse(self, done, *mentioned):
-        """The program said no in one sentence that holds all of `mentioned`."""
-        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
-        lines = done.stderr.strip().splitlines()
-        self.assertEqual(len(lines), 1, done.stderr)
-        for text in mentioned:
-            self.assertIn(str(text), lines[0])
+            cls.prepare("run", cls.recording, "--features", "orb", "--max-frames", frames,
+                        "--map-out", file, "--out", cls.folder / f"{file.stem}_run")
 
     def info(self, file):
         report = self.folder / "info.json"
@@ -78,13 +56,13 @@ class Commands(Saved):
         self.assertLess(report["reprojection_error_px"]["median"], 1.5)
 
     def test_info_of_a_float_map_in_words(self):
-        text = self.succeed(dxslam("map", "info", FIRST_VERSION))
+        text = self.succeed(dxslam("map", "info", FIRST_VERSION)).stdout
         for line in (r"features +sample, 32 floats per keypoint, weights a{12}$",
                      r"component 1 +2 keyframes", r"section GLOB +version 1"):
             self.assertRegex(text, re.compile(line, re.M))
 
     def test_check_finds_nothing_wrong(self):
-        text = self.succeed(dxslam("map", "check", self.first))
+        text = self.succeed(dxslam("map", "check", self.first)).stdout
         self.assertRegex(text, r"checksums +right")
         self.assertRegex(text, r"behind camera 0 ")
         self.assertRegex(text, r"1 groups of covisible keyframes in 1 components")
@@ -103,14 +81,14 @@ class Commands(Saved):
 
     def test_maps_of_one_place_are_joined(self):
         out = self.folder / "joined.dxmap"
-        text = self.succeed(dxslam("map", "merge", self.first, self.second, "--out", out))
+        text = self.succeed(dxslam("map", "merge", self.first, self.second, "--out", out)).stdout
         self.assertRegex(text, "in 1 components")
         parts, joined = [self.info(file) for file in (self.first, self.second)], self.info(out)
         self.assertEqual(joined["keyframes"], sum(part["keyframes"] for part in parts))
         self.assertLess(joined["points"], sum(part["points"] for part in parts))
         self.assertGreater(joined["loops"], 0)
         self.assertLess(joined["reprojection_error_px"]["median"], 1.5)
-        self.assertRegex(self.succeed(dxslam("map", "check", out)),
+        self.assertRegex(self.succeed(dxslam("map", "check", out)).stdout,
                          "1 groups of covisible keyframes in 1 components")
 
     def test_merging_onto_itself_is_safe(self):

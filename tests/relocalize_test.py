@@ -18,10 +18,8 @@ class Relocalize(Recorded):
         super().setUpClass()
         cls.map = cls.folder / "map.dxm"
         cls.run_folder = cls.folder / "run"
-        done = dxslam("run", cls.recording, "--features", "hfnet", "--deterministic", "--out",
-                      cls.run_folder, "--map-out", cls.map)
-        if done.returncode:
-            raise RuntimeError(f"dxslam run: exit {done.returncode}: {done.stderr}")
+        cls.prepare("run", cls.recording, "--features", "hfnet", "--deterministic", "--out",
+                    cls.run_folder, "--map-out", cls.map)
 
     def relocalize(self, out, *options):
         return dxslam("relocalize", self.map, self.recording, "--features", "hfnet", "--out", out,

@@ -9,26 +9,20 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
-from cli_test import BAD_INPUT, BAD_USAGE, INTERRUPTED, PROGRAM, ROOT, dxslam
+from cli_test import BAD_USAGE, INTERRUPTED, PROGRAM, ROOT, Recorded, dxslam
 
 FRAMES = 24
 
 
-class Vocab(unittest.TestCase):
+class Vocab(Recorded):
+    frames, seed = FRAMES, 3
+
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="dxslam_vocab_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
-        cls.recording = cls.folder / "recording"
-        done = dxslam("synth", cls.recording, "--frames", FRAMES, "--seed", 3)
-        if done.returncode:
-            raise RuntimeError(f"dxslam synth: exit {done.returncode}: {done.stderr}")
+        super().setUpClass()
         cls.vocabulary = cls.folder / "orb.fbow"
         cls.trained = cls.train(cls.vocabulary)
 
@@ -42,14 +36,6 @@ class Vocab(unittest.TestCase):
         done = dxslam("vocab", "info", path)
         self.assertEqual(done.returncode, 0, done.stderr)
         return dict(re.split(r"\s{2,}", line, maxsplit=1) for line in done.stdout.splitlines())
-
-    def refuse(self, done, *mentioned):
-        """The program said no in one sentence that holds all of `mentioned`."""
-        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
-        lines = done.stderr.strip().splitlines()
-        self.assertEqual(len(lines), 1, done.stderr)
-        for text in mentioned:
-            self.assertIn(str(text), lines[0])
 
     def test_trains_as_the_paper(self):
         self.assertEqual(self.trained.returncode, 0, self.trained.stderr)
