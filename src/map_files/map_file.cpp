@@ -5,8 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string_view>
 
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
@@ -14,6 +18,7 @@
 #include "map_files/file_bytes.h"
 #include "map_files/map_limits.h"
 #include "map_files/map_sections.h"
+#include "map_files/section_file.h"
 
 namespace dxslam {
 namespace {
@@ -117,6 +122,21 @@ std::string features_of(const MapHeader& header) {
                      header.traits.binary ? "bytes" : "floats");
 }
 
+// A mistyped name must not cost a photo. An empty file is what mktemp makes.
+void require_map_or_nothing(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  std::array<char, 8> start{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw InputError(fmt::format("{}: cannot be read, expected a map or a new name", path));
+  file.read(start.data(), start.size());
+  const std::string_view bytes(start.data(), static_cast<std::size_t>(file.gcount()));
+  if (bytes.empty() || begins_like_a_map(bytes)) return;
+  throw InputError(
+      fmt::format("{}: is no map and is not replaced, expected a map or a new name", path));
+}
+
 }  // namespace
 
 MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
@@ -143,6 +163,11 @@ MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
   return snapshot;
 }
 
+void require_map_target(const std::string& path) {
+  require_map_or_nothing(path);
+  require_writable(path);
+}
+
 void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFileOptions& options) {
   require(
       snapshot.thumbnails.empty() || snapshot.thumbnails.size() == snapshot.parts.keyframes.size(),
@@ -153,6 +178,7 @@ void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFil
   const DescriptorCoding floats =
       options.exact_descriptors ? DescriptorCoding::kFloat32 : DescriptorCoding::kInt8;
   const DescriptorCoding coding = traits.binary ? DescriptorCoding::kBytes : floats;
+  require_map_or_nothing(path);
   SectionWriter file(expected_size(snapshot, coding));
   write_header(snapshot.header, file);
   write_keyframes(snapshot.parts, file);

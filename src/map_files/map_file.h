@@ -60,6 +60,11 @@ struct MapFileOptions {
 void save_map(const std::string& path, const MapSnapshot& snapshot,
               const MapFileOptions& options = {});
 
+/// Throws InputError if save_map() could not write to `path` as things are: for missing folders and
+/// permissions, and for a file that is there and is no map, which save_map() does not replace.
+/// Changes nothing.
+void require_map_target(const std::string& path);
+
 /// A map as it was saved.
 struct StoredMap {
   MapHeader header;

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+
 #include "io/primitives/test_folder.h"
 #include "map_files/crc32c.h"
 #include "map_files/map_sections.h"
@@ -209,6 +211,25 @@ std::string with_section(const MapSnapshot& snapshot, const char* id, std::uint3
   write_globals(snapshot.parts, snapshot.header.traits, DescriptorCoding::kInt8, file);
   write_points(snapshot.parts, file);
   return file.finish();
+}
+
+TEST(MapFile, ReplacesMapsAlone) {
+  const TestFolder folder;
+  const MapSnapshot snapshot = sample_snapshot(3, true);
+  folder.write("photo.jpg", "not a map");
+  for (const auto& action : {std::function<void(const std::string&)>(require_map_target),
+                             std::function<void(const std::string&)>(
+                                 [&](const std::string& path) { save_map(path, snapshot); })}) {
+    expect_input_error([&] { action(folder / "photo.jpg"); }, {"photo.jpg", "no map"});
+    expect_input_error([&] { action(folder / "missing/m.dxmap"); }, {"missing/m.dxmap"});
+    expect_input_error([&] { action(folder.path()); }, {folder.path()});
+  }
+  EXPECT_EQ(folder.read("photo.jpg"), "not a map");
+  folder.write("new.dxmap", "");
+  save_map(folder / "new.dxmap", snapshot);
+  const std::string bytes = folder.read("new.dxmap");
+  require_map_target(folder / "new.dxmap");
+  EXPECT_EQ(folder.read("new.dxmap"), bytes);
 }
 
 TEST(MapFile, SkipsSectionsItNeedNotKnow) {

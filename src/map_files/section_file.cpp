@@ -137,6 +137,8 @@ void check_start(std::string_view start, std::size_t size, const std::string& wh
   read_header(start, size, where);
 }
 
+bool begins_like_a_map(std::string_view bytes) { return bytes.substr(0, kMagic.size()) == kMagic; }
+
 std::vector<Section> read_sections(std::string_view file, const std::string& where) {
   const FileHeader header = read_header(file, file.size(), where);
   const auto damaged = [&](const std::string& what) {

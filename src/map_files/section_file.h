@@ -63,6 +63,10 @@ struct Section {
 inline constexpr std::size_t kStartBytes = 32;
 void check_start(std::string_view start, std::size_t size, const std::string& where);
 
+/// Whether a file that begins with these bytes, up to 8 of them, is a map file by its first
+/// letters.
+bool begins_like_a_map(std::string_view bytes);
+
 /// Takes a file apart, checking sizes and checksums of all its parts. The sections point into
 /// `file`. Throws InputError beginning with `where`.
 std::vector<Section> read_sections(std::string_view file, const std::string& where);
