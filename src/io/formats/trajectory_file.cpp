@@ -94,14 +94,18 @@ TrajectoryWriter::~TrajectoryWriter() { ::close(file_); }
 void TrajectoryWriter::append(const StampedPose& pose) { write(format_pose(pose) + "\n"); }
 
 void TrajectoryWriter::write(std::string_view text) {
+  const auto size = size_ + static_cast<std::int64_t>(text.size());
   while (!text.empty()) {
     const ssize_t written = ::write(file_, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
-      throw InputError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+      const int error = errno;
+      static_cast<void>(::ftruncate(file_, size_));  // less is always possible
+      throw InputError(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
     }
     text.remove_prefix(static_cast<std::size_t>(written));
   }
+  size_ = size;
 }
 
 }  // namespace dxslam

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -31,7 +32,8 @@ class TrajectoryWriter {
   TrajectoryWriter(const TrajectoryWriter&) = delete;
   TrajectoryWriter& operator=(const TrajectoryWriter&) = delete;
 
-  /// Throws InputError if the row could not be written in full (full disk).
+  /// Throws InputError if the row could not be written in full (full disk); the file then ends
+  /// with the row before.
   void append(const StampedPose& pose);
 
  private:
@@ -39,6 +41,7 @@ class TrajectoryWriter {
 
   std::string path_;
   int file_ = -1;
+  std::int64_t size_ = 0;  // bytes of whole rows
 };
 
 }  // namespace dxslam

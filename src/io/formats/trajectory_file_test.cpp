@@ -2,7 +2,9 @@
 // Copyright 2026 The dxslam authors
 #include "io/formats/trajectory_file.h"
 
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -64,6 +66,34 @@ TEST(TrajectoryWriter, ReportsAFullDisk) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
   expect_input_error([] { TrajectoryWriter writer("/dev/full"); }, {"/dev/full", "No space left"});
   expect_input_error([] { TrajectoryWriter writer("/nowhere/t.txt"); }, {"No such file"});
+}
+
+TEST(TrajectoryWriter, KeepsWholeRowsOnAFullDisk) {
+  const TestFolder folder;
+  // A limit on the size of files stands for a full disk.
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_FSIZE, &limit);
+    const rlimit small{1000, limit.rlim_max};
+    TrajectoryWriter writer(folder / "t.txt");
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    int row = 0;
+    try {
+      for (; row < 1000; ++row) writer.append(pose_at(row));
+    } catch (const InputError&) {
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      writer.append(pose_at(row));  // the one that failed
+      ::_exit(row);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_GT(WEXITSTATUS(status), 5);
+  EXPECT_EQ(read_trajectory(folder / "t.txt").size(), WEXITSTATUS(status) + std::size_t{1});
 }
 
 }  // namespace
