@@ -33,7 +33,7 @@ bool matches(const std::string& name, const std::vector<std::string>& patterns) 
   });
 }
 
-bool has_content(const fs::path& file) {
+bool holds_more_than_comments(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   for (std::string line; std::getline(stream, line);) {
     if (!line.empty() && line.front() != '#') return true;
@@ -129,22 +129,25 @@ std::vector<std::string> ResultFolder::results_in(const std::string& folder) con
   return names;
 }
 
+bool ResultFolder::has_content() const {
+  const std::vector<std::string> names = results_in(folder_);
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return matches(name, files_.content) && holds_more_than_comments(file(name));
+  });
+}
+
 bool ResultFolder::whole() const {
   const std::vector<std::string> names = results_in(folder_);
-  const auto any = [&](const auto& condition) {
-    return std::any_of(names.begin(), names.end(), condition);
-  };
-  return any([&](const std::string& name) { return matches(name, files_.last); }) &&
-         any([&](const std::string& name) {
-           return matches(name, files_.content) && has_content(file(name));
-         });
+  const auto is_last = [&](const std::string& name) { return matches(name, files_.last); };
+  return std::any_of(names.begin(), names.end(), is_last) && has_content();
 }
 
 void ResultFolder::begin() {
   if (begun_) return;
   std::error_code error;
   const bool under_way = fs::exists(file(kOnTheWay), error);
-  if (!under_way && fs::exists(file(kPrevious), error) && !whole()) {
+  const bool kept = fs::exists(file(kPrevious), error) ? whole() : has_content();
+  if (!under_way && !kept) {
     for (const std::string& name : results_in(folder_)) remove_or_throw(file(name));
   } else {
     move_aside();

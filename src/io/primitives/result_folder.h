@@ -22,8 +22,8 @@ struct ResultFiles {
 /// Nothing is touched before begin(). Then the last results move to the folder `previous`, and
 /// finish() removes them there once the new ones are whole. A process that is killed at any time
 /// thus leaves the last results whole, in place or in `previous`, and never beside its own: the
-/// next begin() removes what a killed run left and keeps what is in `previous`. One thread at a
-/// time.
+/// next begin() removes what a killed run left and keeps what is in `previous`. Results without
+/// content are not kept. One thread at a time.
 class ResultFolder {
  public:
   /// Makes the folder, where it is missing, and takes it for this object; no other process gets it
@@ -46,6 +46,7 @@ class ResultFolder {
   bool finish();
 
  private:
+  bool has_content() const;
   bool whole() const;
   std::vector<std::string> results_in(const std::string& folder) const;
   void move_aside();
