@@ -79,6 +79,11 @@ Matched match(const OpenlorisSequence& truth, const OpenlorisSequence* estimate,
         fmt::format("the truth of sequence {} has {} different poses, expected at least two",
                     truth.number, poses.size()));
   }
+  if (!(poses.back().stamp > poses.front().stamp)) {
+    throw InputError(
+        fmt::format("the truth of sequence {} begins and ends at {:.6f} s, expected some time",
+                    truth.number, poses.front().stamp));
+  }
   Matched matched;
   OpenlorisSequenceReport& report = matched.report;
   report.number = truth.number;
