@@ -22,6 +22,31 @@ TIMEOUT = 300
 
 # Report: (regular expressions found in its output, regular expressions not found in it).
 EXPECTED = {
+    "01-nothing-tracked-internal-error": (
+        [rf"{kind}, {truth} truth: exit 4, expected 4; trajectory.svg there"
+         for kind in ("zero", "black") for truth in ("with", "without")] +
+        [r"images without depth: exit 3", r"the same without --out: exit 3",
+         r"localization, nothing found: exit 4", r"no depth reading in the first 5 images",
+         r"too few keypoints", r"no depth images"], []),
+    "02-empty-map-crashes-loader": (
+        [r"saving: exit 4", r"map check: exit 3", r"run --map-in: exit 3", r"localization: exit 3",
+         r"lifelong --map-in: exit 3", r"map export --colmap: exit 3"], []),
+    "03-empty-map-replaces-good-one": (
+        [r"the map is empty", r"exit 4; home.dxmap: (\d+) bytes before, \1 after"], []),
+    "04-path-not-utf8": (
+        [r"folder: exit 0", r"skipped file: exit 0", r"lifelong: exit 0",
+         r"summary.json[^-]*---[^-]*summary.json", r"lifelong.json"], []),
+    "06-one-failed-output-loses-the-others": (
+        [r"--map-out in no folder: exit 3", r"lifelong: exit 3",
+         r"no right to mount|disk of --out fills while running: exit 3; map on the good disk: good_",
+         r"no right to mount|an autosave fails: exit 3; --out holds:.*summary.json"],
+        [r"map on the good disk: none"]),
+    "07-mistyped-option-wipes-earlier-result": (
+        [rf"{option}: exit 3; trajectory.txt had (\d+) lines, has \1\n" for option in
+         ("--map-in bad.dxmap", "--features nosuch", "--vocabulary bad.dxmap",
+          "--map-in nosuch.dxmap")], []),
+    "15-old-files-stay-in-out": (
+        [r"older than this run: *\n", r"one map now, but there is *\n"], []),
     "11-jpeg-with-trailer-refused": (["exit 0"], ["truncated", "none of"]),
 }
 

@@ -140,27 +140,34 @@ std::vector<NamedCurve> judge_methods(const LoopExperiment& experiment, const Lo
   return curves;
 }
 
-void write_loop_results(const LoopSettings& settings, const LoopExperiment& experiment,
-                        const LoopTruth& truth, const std::vector<NamedCurve>& curves,
-                        const std::string& name) {
+ResultFiles loop_result_files() {
+  return {
+      {"candidates.csv", "pr.csv", "pr.svg", "summary.json"}, {"summary.json"}, {"summary.json"}};
+}
+
+void write_loop_results(OutputSteps& steps, ResultFolder& out, const LoopSettings& settings,
+                        const LoopExperiment& experiment, const LoopTruth& truth,
+                        const std::vector<NamedCurve>& curves, const std::string& name) {
+  if (!steps.run([&] { out.begin(); })) return;
   const bool several = curves.size() > 1;
   const std::string note = subtitle(settings, experiment, curves);
   Json all = Json::array();
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const MethodRun& run = experiment.runs[i];
-    const fs::path folder =
-        several ? fs::path(settings.out) / curves[i].name : fs::path(settings.out);
-    make_folder(folder.string());
-    write(folder / "candidates.csv", candidates_csv(run, truth));
-    write(folder / "pr.csv", curve_csv(curves[i].curve));
-    write(folder / "pr.svg", draw_loop_curves_svg({curves[i]}, name, note));
+    const fs::path folder = several ? fs::path(out.path()) / curves[i].name : fs::path(out.path());
+    if (!steps.run([&] { make_folder(folder.string()); })) continue;
     const Json summary = summary_of(settings, experiment, truth, run, curves[i].curve, name);
-    write(folder / "summary.json", to_json_text(summary));
     all.push_back(summary);
+    steps.run([&] { write(folder / "candidates.csv", candidates_csv(run, truth)); });
+    steps.run([&] { write(folder / "pr.csv", curve_csv(curves[i].curve)); });
+    steps.run([&] { write(folder / "pr.svg", draw_loop_curves_svg({curves[i]}, name, note)); });
+    steps.run([&] { write(folder / "summary.json", to_json_text(summary)); });
   }
-  if (!several) return;
-  write(fs::path(settings.out) / "pr.svg", draw_loop_curves_svg(curves, name, note));
-  write(fs::path(settings.out) / "summary.json", to_json_text(all));
+  if (several) {
+    steps.run([&] { write(out.file("pr.svg"), draw_loop_curves_svg(curves, name, note)); });
+    steps.run([&] { write(out.file("summary.json"), to_json_text(all)); });
+  }
+  if (steps.failures().empty()) out.finish();
 }
 
 }  // namespace dxslam::apps

@@ -2,7 +2,13 @@
 // Copyright 2026 The dxslam authors
 #include "apps/map_io.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <exception>
+
+#include "apps/console.h"
+#include "core/error.h"
 
 namespace dxslam::apps {
 
@@ -32,6 +38,9 @@ std::vector<std::string> hand_over(StoredMap stored, System& system, const std::
                                    const MapHeader& current, bool grows) {
   require_same_features(stored.header, current, path);
   if (grows) require_same_camera(stored.header, current, path);
+  if (stored.map.keyframe_count() == 0) {
+    throw InputError(fmt::format("{}: the map has no keyframe, expected some to go on with", path));
+  }
   stored.thumbnails.resize(stored.map.keyframe_ids().back() + std::size_t{1});
   system.load_map(std::move(stored.map), loop_edges(stored.loops));
   return std::move(stored.thumbnails);
@@ -40,6 +49,7 @@ std::vector<std::string> hand_over(StoredMap stored, System& system, const std::
 void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
                      const std::vector<LoopEdge>& loops,
                      const std::vector<std::string>& thumbnails) {
+  require(map.keyframe_count() > 0, "an empty map must not be saved");
   save_map(path, take_snapshot(header, map, stored_loops(map, loops), thumbnails));
 }
 
@@ -47,7 +57,7 @@ void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops,
                      const std::vector<std::string>& thumbnails) {
   if (under_way_.valid()) {
     if (under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    under_way_.get();
+    finish();
   }
   under_way_ = std::async(
       std::launch::async,
@@ -57,7 +67,13 @@ void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops,
 }
 
 void AutoSaver::finish() {
-  if (under_way_.valid()) under_way_.get();
+  if (!under_way_.valid()) return;
+  try {
+    under_way_.get();
+  } catch (const std::exception& e) {
+    if (!warned_) warn("autosave: {}; the run goes on and tries again", e.what());
+    warned_ = true;
+  }
 }
 
 }  // namespace dxslam::apps

@@ -27,16 +27,18 @@ std::vector<LoopEdge> loop_edges(const std::vector<StoredLoopEdge>& stored);
 std::vector<std::string> hand_over(StoredMap stored, System& system, const std::string& path,
                                    const MapHeader& current, bool grows);
 
+/// Throws InputError if it cannot be saved, and ContractError for an empty map.
 void save_system_map(const std::string& path, const MapHeader& header, const Map& map,
                      const std::vector<LoopEdge>& loops,
                      const std::vector<std::string>& thumbnails);
 
 /// Saves a map in a thread of its own, so that mapping need not wait for the disk. While one save
-/// is under way further ones are left out.
+/// is under way further ones are left out. A save that fails is said once on stderr; the next one
+/// tries again.
 class AutoSaver {
  public:
   AutoSaver(std::string path, MapHeader header) : path_(std::move(path)), header_(header) {}
-  /// Copies the map and returns. Throws what an earlier save threw.
+  /// Copies the map and returns.
   void save(const Map& map, const std::vector<LoopEdge>& loops,
             const std::vector<std::string>& thumbnails);
   /// Waits for the save under way.
@@ -45,6 +47,7 @@ class AutoSaver {
  private:
   std::string path_;
   MapHeader header_;
+  bool warned_ = false;
   std::future<void> under_way_;
 };
 

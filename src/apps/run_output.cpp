@@ -11,8 +11,8 @@
 #include <opencv2/core/version.hpp>
 #include <utility>
 
+#include "apps/recording_report.h"
 #include "core/error.h"
-#include "core/options.h"
 #include "evaluation/ate.h"
 #include "evaluation/trajectory_svg.h"
 #include "io/formats/options_yaml.h"
@@ -129,43 +129,57 @@ Json loop_table(const System& system) {
           {"candidates", candidates}};
 }
 
-Json summarise(const RunSettings& settings, const RunRecord& record, const SystemOptions& options,
-               const RgbdSequence& sequence, const System& system) {
-  const std::size_t tracked = tracked_frames(system);
-  const double offered = static_cast<double>(std::max<std::size_t>(1, record.frames_offered));
-  Json summary;
-  summary["version"] = DXSLAM_VERSION;
-  summary["sequence"] = sequence.name();
+// What the system tells.
+void add_system(Json& summary, const System& system) {
   summary["features"] = system.extractor().name();
-  summary["frames"] = record.frames_offered;
-  summary["tracked"] = tracked;
-  summary["tracked_share"] = static_cast<double>(tracked) / offered;
   summary["lost_intervals"] = lost_intervals(system);
-  summary["skipped_frames"] = skipped_frames(sequence);
-  summary["dropped_frames"] = record.frames_dropped;
-  summary["interrupted"] = record.interrupted;
   summary["keyframes"] = system.map().keyframe_count();
   summary["points"] = system.map().point_count();
   summary["mapping"] = mapping_table(system);
   summary["components"] = components_table(system);
   summary["loops"] = loop_table(system);
-  summary["mode"] = options.mode;
   summary["stages"] = stage_table(system);
-  summary["startup_ms"] = rounded(record.startup_ms, 1e-3);
-  summary["first_pose_ms"] =
-      record.first_pose_ms ? Json(rounded(*record.first_pose_ms, 1e-3)) : Json(nullptr);
-  summary["wall_s"] = rounded(record.wall_s, 1e-3);
-  summary["frames_per_second"] = rounded(record.wall_s > 0.0 ? offered / record.wall_s : 0.0, 1e-2);
-  summary["peak_memory_mib"] = rounded(peak_memory_mib(), 0.1);
+}
+
+void add_configuration(Json& summary, const RunSettings& settings, const SystemOptions& options) {
+  summary["mode"] = options.mode;
   summary["stride"] = settings.stride;
-  summary["low_light_gain"] = settings.low_light ? Json(*settings.low_light) : Json(nullptr);
-  summary["realtime"] = settings.realtime;
   summary["deterministic"] = options.deterministic;
   summary["seed"] = options.tracking.pnp.seed;
   summary["libraries"] = {{"opencv", CV_VERSION},
                           {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION,
                                                 EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
   summary["configuration"] = dump_options_yaml(options);
+}
+
+void add_times(Json& summary, const RunRecord& record, double offered) {
+  summary["startup_ms"] = rounded(record.startup_ms, 1e-3);
+  summary["first_pose_ms"] =
+      record.first_pose_ms ? Json(rounded(*record.first_pose_ms, 1e-3)) : Json(nullptr);
+  summary["wall_s"] = rounded(record.wall_s, 1e-3);
+  summary["frames_per_second"] = rounded(record.wall_s > 0.0 ? offered / record.wall_s : 0.0, 1e-2);
+  summary["peak_memory_mib"] = rounded(peak_memory_mib(), 0.1);
+}
+
+Json summarise(const Session& session, const RunRecord& record, const RgbdSequence& sequence) {
+  const double offered = static_cast<double>(std::max<std::size_t>(1, record.frames_offered));
+  Json summary;
+  summary["version"] = DXSLAM_VERSION;
+  summary["sequence"] = sequence.name();
+  summary.update(recording_json(sequence));
+  summary["frames"] = record.frames_offered;
+  summary["tracked"] = record.frames_tracked;
+  summary["tracked_share"] = static_cast<double>(record.frames_tracked) / offered;
+  summary["no_pose_reason"] = record.why_no_pose ? Json(*record.why_no_pose) : Json(nullptr);
+  summary["ate"] = truth_json(record.truth);
+  summary["skipped_frames"] = skipped_frames(sequence);
+  summary["dropped_frames"] = record.frames_dropped;
+  summary["interrupted"] = record.interrupted;
+  summary["low_light_gain"] = record.low_light ? Json(*record.low_light) : Json(nullptr);
+  summary["realtime"] = record.realtime;
+  if (session.system() != nullptr) add_system(summary, *session.system());
+  add_times(summary, record, offered);
+  add_configuration(summary, session.settings(), session.options());
   return summary;
 }
 
@@ -200,31 +214,59 @@ void write_map(const std::string& path, const Map& map) {
   write_ply(path, points, centres);
 }
 
-}  // namespace
-
-std::size_t tracked_frames(const System& system) {
-  const auto components = system.components();
-  return components.empty() ? 0 : components.front().frames;
+// The poses as they were written while the program ran. The file keeps both names until the final
+// trajectory takes the first, so that a kill leaves one of them.
+void keep_online(const ResultFolder& folder) {
+  namespace fs = std::filesystem;
+  const fs::path running = folder.file("trajectory.txt");
+  const fs::path kept = folder.file("trajectory_online.txt");
+  std::error_code no_links;
+  fs::create_hard_link(running, kept, no_links);
+  if (no_links) fs::copy_file(running, kept, fs::copy_options::overwrite_existing);
 }
 
-void write_results(const std::string& folder, const RunSettings& settings, const RunRecord& record,
-                   const SystemOptions& options, const RgbdSequence& sequence,
-                   const System& system) {
-  const std::filesystem::path dir(folder);
-  const Trajectory trajectory = system.trajectory();
-  std::filesystem::rename(dir / "trajectory.txt", dir / "trajectory_online.txt");
-  write_trajectory(dir / "trajectory.txt", trajectory);
-  write_trajectory(dir / "keyframes.txt", system.keyframe_trajectory());
+// The trajectories in maps other than that of trajectory.txt.
+void write_components(OutputSteps& steps, const ResultFolder& folder, const System& system) {
   const std::vector<ComponentSummary> components = system.components();
   for (const ComponentSummary& c : components) {
     if (c.component == components.front().component || c.frames == 0) continue;
-    write_trajectory(dir / fmt::format("trajectory_map{}.txt", c.component),
-                     system.trajectory(c.component));
+    steps.run([&] {
+      write_trajectory(folder.file(fmt::format("trajectory_map{}.txt", c.component)),
+                       system.trajectory(c.component));
+    });
   }
-  write_map(dir / "map.ply", system.map());
-  const Json summary = summarise(settings, record, options, sequence, system);
-  write_file_atomically(dir / "summary.json", to_json_text(summary));
-  write_file_atomically(dir / "trajectory.svg", draw_result(trajectory, sequence));
+}
+
+}  // namespace
+
+void write_results(OutputSteps& steps, Session& session, OnlineTrajectory& online,
+                   const RunRecord& record, const RgbdSequence& sequence) {
+  if (session.folder() == nullptr) return;
+  ResultFolder& folder = *session.folder();
+  const System* system = session.system();
+  // Where no pose has done so. What belongs together must not lie among the last results.
+  if (!steps.run([&] { folder.begin(); })) return;
+  steps.run([&] {
+    online.finish();
+    keep_online(folder);
+  });
+  steps.run([&] { write_trajectory(folder.file("trajectory.txt"), record.trajectory); });
+  if (system != nullptr) write_components(steps, folder, *system);
+  steps.run([&] {
+    write_trajectory(folder.file("keyframes.txt"),
+                     system ? system->keyframe_trajectory() : Trajectory());
+  });
+  const Map empty;
+  steps.run([&] { write_map(folder.file("map.ply"), system ? system->map() : empty); });
+  steps.run([&] {
+    write_file_atomically(folder.file("trajectory.svg"), draw_result(record.trajectory, sequence));
+  });
+  steps.run([&] {
+    Json summary = summarise(session, record, sequence);
+    summary["failed_outputs"] = steps.failures();
+    write_file_atomically(folder.file("summary.json"), to_json_text(summary));
+  });
+  if (steps.failures().empty()) folder.finish();
 }
 
 }  // namespace dxslam::apps

@@ -2,7 +2,8 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
-#include <optional>
+#include <CLI/CLI.hpp>
+#include <cstddef>
 #include <string>
 
 #include "io/recordings/sequence_reader.h"
@@ -10,9 +11,8 @@
 
 namespace dxslam::apps {
 
-/// What `dxslam run` was asked for.
+/// What `dxslam run` and `dxslam lifelong` are asked for alike.
 struct RunSettings {
-  std::string sequence;
   SequenceOptions reader;
   std::string config;
   std::string features;
@@ -25,21 +25,14 @@ struct RunSettings {
   bool thumbnails = false;  ///< pictures of the keyframes into map_out
   bool no_loop_closing = false;
   std::size_t stride = 1;
-  std::size_t max_frames = 0;  ///< 0: all
-  std::optional<double> low_light;
-  bool realtime = false;
   bool deterministic = false;
 };
 
-/// How a run went, beside what the system itself reports.
-struct RunRecord {
-  double startup_ms = 0.0;  ///< from the start of the command to the first image
-  /// From the start of the command to the first pose of a frame.
-  std::optional<double> first_pose_ms;
-  double wall_s = 0.0;  ///< from the first image to the last result
-  std::size_t frames_offered = 0;
-  std::size_t frames_dropped = 0;  ///< real time only: the system was busy
-  bool interrupted = false;
-};
+/// Adds the options for them, except --out.
+void add_run_options(CLI::App& command, RunSettings& settings);
+
+/// The options of the system as configured, with what the command line says. Throws InputError for
+/// what cannot be used, and for settings that do not go together.
+SystemOptions system_options_of(const RunSettings& settings);
 
 }  // namespace dxslam::apps

@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "features/extractor_factory.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
 #include "io/recordings/sequence_reader.h"
 
 namespace dxslam::apps {
@@ -155,6 +156,7 @@ nlohmann::ordered_json to_json(const std::vector<Contestant>& contestants, int t
 }
 
 void bench(const BenchArguments& arguments) {
+  if (!arguments.json.empty()) require_writable(arguments.json);
   cv::setNumThreads(arguments.options.threads);
   const auto frames = read_frames(arguments);
   auto contestants = make_contestants(arguments);
@@ -162,7 +164,7 @@ void bench(const BenchArguments& arguments) {
   print_table(contestants, frames.size(), arguments.options.threads);
   if (!arguments.json.empty()) {
     write_file_atomically(arguments.json,
-                          to_json(contestants, arguments.options.threads).dump(2) + "\n");
+                          to_json_text(to_json(contestants, arguments.options.threads)));
   }
 }
 

@@ -2,203 +2,258 @@
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <cctype>
+#include <deque>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
 #include "apps/console.h"
-#include "apps/map_io.h"
+#include "apps/online_trajectory.h"
 #include "apps/process.h"
 #include "apps/progress.h"
+#include "apps/recording_report.h"
+#include "apps/session.h"
 #include "apps/stoppable_sequence.h"
-#include "apps/system_setup.h"
 #include "apps/usage.h"
+#include "core/error.h"
 #include "evaluation/openloris_result.h"
-#include "features/extractor_factory.h"
-#include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
-#include "io/recordings/sequence_reader.h"
-#include "slam/system.h"
 #include "synthetic/low_light.h"
 
 namespace dxslam::apps {
 namespace {
 
-namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
-struct LifelongSettings {
+struct LifelongArguments {
+  RunSettings settings;
   std::vector<std::string> sequences;
-  SequenceOptions reader;
-  std::string config;
-  std::string features;
-  std::string out;
-  std::string map_in;
-  std::string map_out;
-  std::string mode;
-  std::string scene;
+  std::string scene = "scene";
   std::string frame = "d400_color";
-  std::size_t stride = 1;
   std::vector<int> low_light;  ///< numbers of the sequences that are darkened
-  bool deterministic = false;
 };
 
-/// What is known of one sequence when all have run.
+/// One recording as it is fed.
 struct Visit {
-  std::string name;
+  Visit(const RgbdSequence& fed, ResultFolder* folder, std::size_t number)
+      : recording(fed), first(number == 1), file(folder, fmt::format("online_{}.txt", number)) {}
+
+  const RgbdSequence& recording;
+  const bool first;
   std::size_t frames = 0;
-  Trajectory online;  ///< poses in the map's world, as given at the time
   double first_stamp = 0.0;
+  Trajectory online;  ///< poses in the first map's world, as given at the time
+  OnlineTrajectory file;
 };
 
-std::vector<std::unique_ptr<RgbdSequence>> open_all(const LifelongSettings& settings) {
-  std::vector<std::unique_ptr<RgbdSequence>> all;
-  for (const std::string& folder : settings.sequences) {
-    all.push_back(stoppable(open_sequence(folder, settings.reader)));
+// Which visit the frames are of that are not tracked yet. Two threads.
+class Underway {
+ public:
+  void push(Visit& visit) {
+    const std::lock_guard lock(mutex_);
+    visits_.push_back(&visit);
+  }
+  Visit& pop() {
+    const std::lock_guard lock(mutex_);
+    Visit& visit = *visits_.front();
+    visits_.pop_front();
+    return visit;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::deque<Visit*> visits_;
+};
+
+using Recordings = std::vector<std::unique_ptr<RgbdSequence>>;
+
+// Both become part of a file of lines and, the scene, of its name.
+void check_name(const char* option, const std::string& name) {
+  const auto fits = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  if (!name.empty() && std::all_of(name.begin(), name.end(), fits)) return;
+  throw InputError(
+      fmt::format("{} is '{}', expected letters, digits, '-', '_' and '.' alone", option, name));
+}
+
+Recordings open_all(const LifelongArguments& arguments) {
+  Recordings all;
+  for (const std::string& folder : arguments.sequences) {
+    all.push_back(stoppable(open_sequence(folder, arguments.settings.reader)));
+    require_depth(*all.back());
     const Camera& first = all.front()->camera();
     const Camera& camera = all.back()->camera();
     if (camera.width != first.width || camera.height != first.height || camera.fx != first.fx ||
         camera.fy != first.fy || camera.cx != first.cx || camera.cy != first.cy) {
       throw InputError(fmt::format("{}: has another camera than {}, expected one camera for all",
-                                   folder, settings.sequences.front()));
+                                   folder, arguments.sequences.front()));
     }
   }
   return all;
 }
 
-void feed(const LifelongSettings& settings, RgbdSequence& sequence, bool dark, System& system,
-          Visit& visit) {
+void feed(RgbdSequence& recording, std::size_t stride, bool dark, Session& session, Visit& visit,
+          Underway& underway) {
   const LowLight low_light(LowLight::kDefaultGain);
-  system.begin_sequence();
-  for (std::size_t i = 0; i < sequence.size(); i += settings.stride) {
-    std::optional<RgbdImage> image = sequence.read(i);
+  session.system()->begin_sequence();
+  for (std::size_t i = 0; i < recording.size(); i += stride) {
+    std::optional<RgbdImage> image = recording.read(i);
     if (stop_requested()) return;
     if (!image) continue;
     if (dark) image->color = low_light.apply(image->color, image->index);
     if (visit.frames++ == 0) visit.first_stamp = image->stamp;
-    system.process(*image);
+    underway.push(visit);
+    session.process(*image, false);
+  }
+}
+
+void feed_all(const LifelongArguments& arguments, const Recordings& recordings, Session& session,
+              std::deque<Visit>& visits, Underway& underway) {
+  for (std::size_t v = 0; v < recordings.size() && !stop_requested(); ++v) {
+    visits.emplace_back(*recordings[v], session.folder(), v + 1);
+    const bool dark = std::count(arguments.low_light.begin(), arguments.low_light.end(),
+                                 static_cast<int>(v) + 1) > 0;
+    feed(*recordings[v], arguments.settings.stride, dark, session, visits.back(), underway);
   }
 }
 
 // Poses given in a world of their own (a map begun anew and not yet joined) say nothing about the
 // place in the first map, so they do not count as localized.
-void collect_online_poses(const System& system, std::vector<Visit>& visits) {
-  std::size_t v = 0;
-  std::size_t left = visits.front().frames;  // of visit v
-  system.frames().for_each([&](const TrackedFrame& frame) {
-    while (left == 0) left = visits[++v].frames;
-    --left;
-    const bool begins = frame.component == kNoId && v == 0;
-    if (frame.state != TrackingState::kTracking || (frame.component != 0 && !begins)) return;
-    visits[v].online.push_back({frame.stamp, frame.world_from_camera});
-  });
+void note(const TrackedFrame& frame, Visit& visit) {
+  const bool begins = frame.component == kNoId && visit.first;
+  if (frame.state != TrackingState::kTracking || (frame.component != 0 && !begins)) return;
+  visit.online.push_back({frame.stamp, frame.world_from_camera});
+  visit.file.append(visit.online.back());
 }
 
-void write_lifelong(const LifelongSettings& settings, const System& system,
-                    const std::vector<Visit>& visits) {
+std::size_t localized(const std::deque<Visit>& visits) {
+  std::size_t sum = 0;
+  for (const Visit& visit : visits) sum += visit.online.size();
+  return sum;
+}
+
+Json row_of(const Visit& visit, const MapSize& size) {
+  Json row = {{"sequence", visit.recording.name()},
+              {"frames", visit.frames},
+              {"localized", visit.online.size()},
+              {"keyframes", size.keyframes},
+              {"points", size.points}};
+  row["seconds_to_first_pose"] =
+      visit.online.empty() ? Json(nullptr) : Json(visit.online.front().stamp - visit.first_stamp);
+  row["ate"] = truth_json(compare_with_truth(visit.recording, visit.online));
+  row.update(recording_json(visit.recording));
+  return row;
+}
+
+OpenlorisResult result_of(const LifelongArguments& arguments, const std::deque<Visit>& visits) {
   OpenlorisResult result;
-  result.scene = settings.scene;
-  result.frame = settings.frame;
-  nlohmann::ordered_json table = nlohmann::ordered_json::array();
+  result.scene = arguments.scene;
+  result.frame = arguments.frame;
   for (std::size_t v = 0; v < visits.size(); ++v) {
-    const Visit& visit = visits[v];
     OpenlorisSequence sequence;
     sequence.number = static_cast<int>(v) + 1;
-    sequence.poses = visit.online;
-    result.sequences.push_back(sequence);
-    const MapSize size = v < system.map_sizes().size() ? system.map_sizes()[v] : MapSize{};
-    nlohmann::ordered_json row = {{"sequence", visit.name},
-                                  {"frames", visit.frames},
-                                  {"localized", visit.online.size()},
-                                  {"keyframes", size.keyframes},
-                                  {"points", size.points}};
-    row["seconds_to_first_pose"] =
-        visit.online.empty()
-            ? nlohmann::ordered_json(nullptr)
-            : nlohmann::ordered_json(visit.online.front().stamp - visit.first_stamp);
-    table.push_back(row);
-    write_trajectory(fs::path(settings.out) / fmt::format("online_{}.txt", v + 1), visit.online);
-    print("{:>3}  {:<24} {:>6} of {:>6} frames localized, {:>5} keyframes, {:>7} points\n", v + 1,
-          visit.name, visit.online.size(), visit.frames, size.keyframes, size.points);
+    sequence.poses = visits[v].online;
+    result.sequences.push_back(std::move(sequence));
   }
-  write_openloris_result(fs::path(settings.out) / fmt::format("dxslam_{}.txt", settings.scene),
-                         result);
-  write_file_atomically(fs::path(settings.out) / "lifelong.json", to_json_text(table));
+  return result;
 }
 
-int run(const LifelongSettings& settings) {
-  const SystemOptions options = load_system_options(
-      {settings.config, settings.features, settings.mode, settings.deterministic});
-  const auto sequences = open_all(settings);
-  make_folder(settings.out);
+void write_results(OutputSteps& steps, const LifelongArguments& arguments, Session& session,
+                   std::deque<Visit>& visits) {
+  ResultFolder& folder = *session.folder();
+  if (!steps.run([&] { folder.begin(); })) return;
+  for (Visit& visit : visits) steps.run([&] { visit.file.finish(); });
+  steps.run([&] {
+    write_openloris_result(folder.file(fmt::format("dxslam_{}.txt", arguments.scene)),
+                           result_of(arguments, visits));
+  });
+  steps.run([&] {
+    Json table = Json::array();
+    for (std::size_t v = 0; v < visits.size(); ++v) {
+      const auto& sizes = session.system()->map_sizes();
+      table.push_back(row_of(visits[v], v < sizes.size() ? sizes[v] : MapSize{}));
+    }
+    write_file_atomically(folder.file("lifelong.json"), to_json_text(table));
+  });
+  if (steps.failures().empty()) folder.finish();
+}
+
+void print_outcome(const std::deque<Visit>& visits, const System* system) {
+  for (std::size_t v = 0; v < visits.size(); ++v) {
+    const Visit& visit = visits[v];
+    const MapSize size = v < system->map_sizes().size() ? system->map_sizes()[v] : MapSize{};
+    print("{:>3}  {:<24} {:>6} of {:>6} frames localized, {:>5} keyframes, {:>7} points\n", v + 1,
+          visit.recording.name(), visit.online.size(), visit.frames, size.keyframes, size.points);
+    if (const auto truth = compare_with_truth(visit.recording, visit.online)) {
+      print_truth(*truth, visit.recording.camera());
+    }
+  }
+}
+
+int end(const LifelongArguments& arguments, Session& session, std::deque<Visit>& visits) {
+  OutputSteps steps;
+  session.save_map(steps);
+  write_results(steps, arguments, session, visits);
+  session.all_is_saved();
+  print_outcome(visits, session.system());
+  std::size_t frames = 0;
+  for (const Visit& visit : visits) frames += visit.frames;
+  const int code = judge_tracking(localized(visits), frames, session.why_no_pose());
+  print("results in {}\n", session.folder()->path());
+  return steps.report(stop_requested() ? kInterrupted : code);
+}
+
+int run(const LifelongArguments& arguments) {
+  check_name("--scene", arguments.scene);
+  check_name("--frame", arguments.frame);
+  Session session(arguments.settings);
+  const Recordings recordings = open_all(arguments);
+  session.claim_targets();
   std::size_t planned = 0;
-  for (const auto& s : sequences) planned += (s->size() + settings.stride - 1) / settings.stride;
+  for (const auto& recording : recordings) {
+    planned += (recording->size() + arguments.settings.stride - 1) / arguments.settings.stride;
+  }
   Progress progress("frames", planned);
   std::size_t done = 0;
-  System system(sequences.front()->camera(), make_extractor(options.features, options.extractor),
-                options, [&](const TrackedFrame& frame) {
-                  const bool tracking = frame.state == TrackingState::kTracking;
-                  progress.update(++done, tracking ? "tracking" : "lost");
-                });
-  const MapHeader header = map_header(sequences.front()->camera(), system.extractor());
-  std::vector<std::string> thumbnails;
-  if (!settings.map_in.empty()) {
-    thumbnails = hand_over(load_map(settings.map_in), system, settings.map_in, header,
-                           options.mode == "slam");
-  }
-  std::optional<Unsaved> unsaved(std::in_place);
-  std::vector<Visit> visits;
-  for (std::size_t v = 0; v < sequences.size() && !stop_requested(); ++v) {
-    visits.push_back({sequences[v]->name(), 0, {}, 0.0});
-    const bool dark = std::count(settings.low_light.begin(), settings.low_light.end(),
-                                 static_cast<int>(v) + 1) > 0;
-    feed(settings, *sequences[v], dark, system, visits.back());
-  }
-  system.finish([] { return !stop_requested(); });
+  std::deque<Visit> visits;  // which stay where they are
+  Underway underway;
+  const auto system = session.start(recordings.front()->camera(), [&](const TrackedFrame& frame) {
+    Visit& visit = underway.pop();
+    note(frame, visit);
+    const bool tracking = frame.state == TrackingState::kTracking;
+    progress.update(++done, tracking ? "tracking" : "lost");
+  });
+  for (const auto& recording : recordings) print_recording(*recording);
+  if (system) feed_all(arguments, recordings, session, visits, underway);
+  session.finish();
   progress.finish();
-  if (!settings.map_out.empty()) {
-    save_system_map(settings.map_out, header, system.map(), system.backend().closed_loops(),
-                    thumbnails);
-  }
-  collect_online_poses(system, visits);
-  write_lifelong(settings, system, visits);
-  unsaved.reset();
-  print("results in {}\n", settings.out);
-  return kSuccess;
+  return end(arguments, session, visits);
 }
 
 }  // namespace
 
 void add_lifelong_command(CLI::App& app) {
-  auto settings = std::make_shared<LifelongSettings>();
-  settings->scene = "scene";
+  auto arguments = std::make_shared<LifelongArguments>();
+  RunSettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand(
       "lifelong", "Feed recordings of one place one after another, as if day by day");
-  command->add_option("SEQUENCE", settings->sequences, "Folders, in order")->required();
-  command->add_option("--out", settings->out, "Folder for the results")->required();
+  command->add_option("SEQUENCE", arguments->sequences, "Folders, in order")->required();
+  command->add_option("--out", settings.out, "Folder for the results")->required();
+  add_run_options(*command, settings);
+  command->add_option("--scene", arguments->scene, "Name of the scene in the result")
+      ->capture_default_str();
+  command->add_option("--frame", arguments->frame, "Name of the camera in the result")
+      ->capture_default_str();
   command
-      ->add_option("--format", settings->reader.format, "auto, tum, 7scenes, openloris or folder")
-      ->capture_default_str();
-  command->add_option("--calibration", settings->reader.calibration,
-                      "Camera preset or YAML file (default: by format)");
-  command->add_option("--config", settings->config, "YAML file; see `dxslam config dump`");
-  command->add_option("--features", settings->features, "Extractor name or model manifest");
-  command->add_option("--mode", settings->mode, "slam, or localization in the map of --map-in");
-  command->add_option("--map-in", settings->map_in, "Go on with this map");
-  command->add_option("--map-out", settings->map_out, "Save the map here");
-  command->add_option("--scene", settings->scene, "Name of the scene in the result")
-      ->capture_default_str();
-  command->add_option("--frame", settings->frame, "Name of the camera in the result")
-      ->capture_default_str();
-  command->add_option("--stride", settings->stride, "Use every n-th frame")->check(whole_number(1));
-  command
-      ->add_option("--low-light-in", settings->low_light,
+      ->add_option("--low-light-in", arguments->low_light,
                    "Darken the sequences of these numbers (from 1; low-light model)")
       ->check(whole_number(1));
-  command->add_flag("--deterministic", settings->deterministic,
-                    "One thread, exact arithmetic: the same result every time");
-  command->callback([settings] {
-    if (const int code = run(*settings); code != kSuccess) throw CLI::RuntimeError(code);
+  command->callback([arguments] {
+    if (const int code = run(*arguments); code != kSuccess) throw CLI::RuntimeError(code);
   });
 }
 

@@ -58,6 +58,8 @@ void find_loops(const LoopsArguments& arguments) {
   }
   std::optional<LoopTruth> truth;  // a file is read at once, so that mistakes show at once
   if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
+  std::optional<ResultFolder> folder;  // before anything costs time
+  if (!settings.out.empty()) folder.emplace(settings.out, loop_result_files());
   Progress progress("images", sequence->size());
   const LoopExperiment experiment = run_loop_experiment(
       settings, *sequence,
@@ -69,8 +71,9 @@ void find_loops(const LoopsArguments& arguments) {
   }
   if (!truth) truth = load_loop_truth(settings, *sequence, experiment.views);
   const std::vector<NamedCurve> curves = judge_methods(experiment, *truth);
-  if (!settings.out.empty()) {
-    write_loop_results(settings, experiment, *truth, curves, sequence->name());
+  OutputSteps steps;
+  if (folder) {
+    write_loop_results(steps, *folder, settings, experiment, *truth, curves, sequence->name());
   }
   print_table(experiment, curves);
   if (!sequence->skipped().empty()) {
@@ -78,7 +81,8 @@ void find_loops(const LoopsArguments& arguments) {
     warn("{} frames were skipped; the first, {}: {}", sequence->skipped().size(), first.index,
          first.reason);
   }
-  if (!settings.out.empty()) print("results in {}\n", settings.out);
+  if (folder) print("results in {}\n", folder->path());
+  if (const int code = steps.report(kSuccess); code != kSuccess) throw CLI::RuntimeError(code);
 }
 
 void add_input_options(CLI::App& command, LoopSettings& settings) {

@@ -10,6 +10,8 @@
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/map_weld.h"
+#include "apps/output_steps.h"
+#include "apps/recording_report.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
@@ -37,12 +39,6 @@ struct MapArguments {
   bool apart = false;
 };
 
-Json camera_table(const Camera& c) {
-  return {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy},
-          {"cx", c.cx},       {"cy", c.cy},         {"k1", c.k1}, {"k2", c.k2},
-          {"p1", c.p1},       {"p2", c.p2},         {"k3", c.k3}};
-}
-
 Json sections_table(const std::string& path) {
   Json sections = Json::array();
   for (const MapFileSection& s : list_map_sections(path)) {
@@ -69,7 +65,7 @@ Json describe_map(const std::string& path, const StoredMap& stored, const MapSta
   report["file"] = path;
   report["bytes"] = std::filesystem::file_size(path);
   report["sections"] = sections_table(path);
-  report["camera"] = camera_table(stored.header.camera);
+  report["camera"] = camera_json(stored.header.camera);
   report["features"] = stored.header.extractor;
   report["model_sha256"] = stored.header.model_hash;
   report["descriptors"] = {{"kind", traits.binary ? "binary" : "float"},
@@ -94,7 +90,7 @@ void print_info(const StoredMap& stored, const MapStatistics& s, double bytes) {
   const Camera& c = header.camera;
   const double keyframes =
       static_cast<double>(std::max<std::size_t>(1, stored.map.keyframe_count()));
-  print("features      {}, {} {} a keypoint{}\n", header.extractor, header.traits.dimension,
+  print("features      {}, {} {} per keypoint{}\n", header.extractor, header.traits.dimension,
         header.traits.binary ? "bytes" : "floats",
         header.model_hash.empty() ? "" : ", weights " + header.model_hash.substr(0, 12));
   print("camera        {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}\n", c.width, c.height, c.fx,
@@ -164,14 +160,21 @@ void export_command(const MapArguments& arguments) {
     throw InputError(
         fmt::format("{}: has no component {}, expected less than {}", path, component, components));
   }
+  OutputSteps steps;
   if (!arguments.ply.empty()) {
-    write_map_ply(arguments.ply, stored.map, arguments.component < 0 ? kNoId : component);
+    steps.run([&] {
+      write_map_ply(arguments.ply, stored.map, arguments.component < 0 ? kNoId : component);
+    });
   }
-  if (!arguments.colmap.empty()) write_map_colmap(arguments.colmap, stored);
-  if (!arguments.thumbnails.empty()) write_thumbnails(arguments.thumbnails, stored);
+  if (!arguments.colmap.empty()) steps.run([&] { write_map_colmap(arguments.colmap, stored); });
+  if (!arguments.thumbnails.empty()) {
+    steps.run([&] { write_thumbnails(arguments.thumbnails, stored); });
+  }
+  if (const int code = steps.report(kSuccess); code != kSuccess) throw CLI::RuntimeError(code);
 }
 
 void merge_command(const MapArguments& arguments) {
+  require_map_target(arguments.out);
   StoredMap merged = load_map(arguments.files.front());
   for (std::size_t i = 1; i < arguments.files.size(); ++i) {
     const std::string& path = arguments.files[i];

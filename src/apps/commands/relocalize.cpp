@@ -11,13 +11,18 @@
 #include "apps/console.h"
 #include "apps/features_arguments.h"
 #include "apps/map_io.h"
+#include "apps/output_steps.h"
+#include "apps/process.h"
 #include "apps/progress.h"
+#include "apps/recording_report.h"
+#include "apps/stoppable_sequence.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "evaluation/statistics.h"
 #include "io/formats/options_yaml.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/result_folder.h"
 #include "io/recordings/sequence_reader.h"
 #include "relocalization/relocalizer.h"
 #include "slam/stage_times.h"
@@ -75,11 +80,23 @@ struct Results {
   }
 };
 
-void write_results(const std::string& folder, const Results& results) {
-  make_folder(folder);
-  const std::filesystem::path out(folder);
-  write_trajectory(out / "poses.txt", results.poses);
-  write_file_atomically(out / "relocalization.csv", results.rows);
+const ResultFiles kFiles{
+    {"poses.txt", "relocalization.csv"}, {"relocalization.csv"}, {"relocalization.csv"}};
+
+// A recording may have its true poses in a file of the same name.
+void require_own_poses(const ResultFolder& folder) {
+  namespace fs = std::filesystem;
+  const std::string poses = folder.file("poses.txt");
+  if (!fs::exists(poses) || fs::exists(folder.file("relocalization.csv"))) return;
+  throw InputError(fmt::format(
+      "{}: is not from `dxslam relocalize` and would be replaced, expected another --out", poses));
+}
+
+void write_results(OutputSteps& steps, ResultFolder& folder, const Results& results) {
+  if (!steps.run([&] { folder.begin(); })) return;
+  steps.run([&] { write_trajectory(folder.file("poses.txt"), results.poses); });
+  steps.run([&] { write_file_atomically(folder.file("relocalization.csv"), results.rows); });
+  if (steps.failures().empty()) folder.finish();
 }
 
 Results ask_all(const RelocalizeArguments& arguments, RgbdSequence& sequence,
@@ -92,6 +109,7 @@ Results ask_all(const RelocalizeArguments& arguments, RgbdSequence& sequence,
   std::size_t done = 0;
   for (std::size_t i = 0; i < sequence.size(); i += arguments.stride) {
     std::optional<RgbdImage> image = sequence.read(i);
+    if (stop_requested()) break;
     ++done;
     if (!image) continue;
     if (low_light) image->color = low_light->apply(image->color, image->index);
@@ -106,20 +124,30 @@ Results ask_all(const RelocalizeArguments& arguments, RgbdSequence& sequence,
   return results;
 }
 
-void relocalize(const RelocalizeArguments& arguments) {
+int relocalize(const RelocalizeArguments& arguments) {
   SystemOptions options;
   if (!arguments.config.empty()) options = load_options(arguments.config, options);
   const std::unique_ptr<RgbdSequence> sequence =
-      open_sequence(arguments.sequence, arguments.reader);
+      stoppable(open_sequence(arguments.sequence, arguments.reader));
+  std::optional<ResultFolder> folder;
+  if (!arguments.out.empty()) {
+    folder.emplace(arguments.out, kFiles);
+    require_own_poses(*folder);
+  }
   const std::unique_ptr<FeatureExtractor> extractor = make_extractor(arguments.features);
   const SearchedMap map = open_map(arguments, map_header(sequence->camera(), *extractor));
   const Relocalizer relocalizer(sequence->camera(), extractor->traits(), options.relocalization);
+  print_recording(*sequence);
+  std::optional<Unsaved> unsaved(std::in_place);
   const Results results = ask_all(arguments, *sequence, *extractor, map, relocalizer);
-  if (!arguments.out.empty()) write_results(arguments.out, results);
+  OutputSteps steps;
+  if (folder) write_results(steps, *folder, results);
+  unsaved.reset();
   print("{} of {} frames found in a map of {} keyframes; {:.1f} ms per frame (median)\n",
         results.poses.size(), results.times.size(), map.stored.map.keyframe_count(),
         summarise(results.times).median);
-  if (!arguments.out.empty()) print("results in {}\n", arguments.out);
+  if (folder) print("results in {}\n", folder->path());
+  return steps.report(stop_requested() ? kInterrupted : kSuccess);
 }
 
 }  // namespace
@@ -142,7 +170,9 @@ void add_relocalize_command(CLI::App& app) {
       ->check(whole_number(1));
   add_feature_options(*command, arguments->features);
   add_low_light_option(*command, arguments->low_light);
-  command->callback([arguments] { relocalize(*arguments); });
+  command->callback([arguments] {
+    if (const int code = relocalize(*arguments); code != kSuccess) throw CLI::RuntimeError(code);
+  });
 }
 
 }  // namespace dxslam::apps

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace dxslam::apps {
+
+/// The outputs at the end of a command, each written on its own: one that fails costs no other.
+class OutputSteps {
+ public:
+  /// Calls `write`, and keeps the sentence of what it throws. Returns whether it threw nothing.
+  bool run(const std::function<void()>& write);
+  /// One sentence for each failure so far.
+  const std::vector<std::string>& failures() const { return failures_; }
+  /// Says all failures on stderr, one per line. Returns the command's exit code: `code` if there is
+  /// none.
+  int report(int code) const;
+
+ private:
+  std::vector<std::string> failures_;
+  bool bug_ = false;
+};
+
+}  // namespace dxslam::apps

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/recording_report.h"
+
+#include <cmath>
+
+#include "apps/console.h"
+#include "apps/statistics_json.h"
+#include "core/error.h"
+#include "evaluation/ate.h"
+
+namespace dxslam::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kWrongScale = 0.1;
+// The path tells scale only if it shrinks the error as well; a short path fits at any scale.
+constexpr double kExplained = 0.7;
+
+}  // namespace
+
+void print_recording(const RgbdSequence& recording) {
+  const Camera& c = recording.camera();
+  const RecordingFacts& facts = recording.facts();
+  warn("camera of {}: {}x{}, fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f}{}",
+       facts.calibration_source, c.width, c.height, c.fx, c.fy, c.cx, c.cy,
+       c.has_distortion() ? ", distorted" : "");
+  if (!facts.has_depth) return;
+  if (facts.depth_share == 0.0) {
+    warn("depth: {:g} units per metre, no reading in the first images", c.depth_factor);
+    return;
+  }
+  warn("depth: {:g} units per metre, median {:.2f} m in the first images, {:.0f} % of their pixels",
+       c.depth_factor, facts.median_depth, 100.0 * facts.depth_share);
+}
+
+Json camera_json(const Camera& c) {
+  return {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy},
+          {"cx", c.cx},       {"cy", c.cy},         {"k1", c.k1}, {"k2", c.k2},
+          {"p1", c.p1},       {"p2", c.p2},         {"k3", c.k3}};
+}
+
+Json recording_json(const RgbdSequence& recording) {
+  const RecordingFacts& facts = recording.facts();
+  return {{"calibration", facts.calibration_source},
+          {"camera", camera_json(recording.camera())},
+          {"depth_factor", recording.camera().depth_factor},
+          {"median_depth_m", facts.depth_share > 0.0 ? Json(facts.median_depth) : Json(nullptr)},
+          {"depth_share", facts.depth_share}};
+}
+
+bool TruthReport::scale_is_wrong() const {
+  return std::abs(std::log(scale)) > std::log1p(kWrongScale) &&
+         rmse_with_scale < kExplained * position.rmse;
+}
+
+std::optional<TruthReport> compare_with_truth(const RgbdSequence& recording,
+                                              const Trajectory& estimate) {
+  if (recording.ground_truth().empty() || estimate.empty()) return std::nullopt;
+  try {
+    const AteReport rigid = evaluate_ate(recording.ground_truth(), estimate);
+    const AteReport similar = evaluate_ate(recording.ground_truth(), estimate, {Alignment::kSim3});
+    return TruthReport{rigid.position, similar.truth_from_estimate.scale(), similar.position.rmse};
+  } catch (const InputError&) {  // no common stamps, or all on one line
+    return std::nullopt;
+  }
+}
+
+void print_truth(const TruthReport& report, const Camera& camera) {
+  print("ATE {:.4f} m over {} poses, scale {:.3f} against the truth\n", report.position.rmse,
+        report.position.count, report.scale);
+  if (!report.scale_is_wrong()) return;
+  warn(
+      "the true path is {:.3g} times as long: with a depth_factor of {:.4g} instead of {:g} they "
+      "would agree",
+      report.scale, camera.depth_factor / report.scale, camera.depth_factor);
+}
+
+Json truth_json(const std::optional<TruthReport>& report) {
+  if (!report) return nullptr;
+  Json json = statistics_json(report->position);
+  json["sim3_scale"] = report->scale;
+  json["sim3_rmse"] = report->rmse_with_scale;
+  return json;
+}
+
+}  // namespace dxslam::apps

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/camera.h"
+#include "core/sequence.h"
+#include "core/trajectory.h"
+#include "evaluation/statistics.h"
+
+namespace dxslam::apps {
+
+/// Two lines on stderr: the calibration used and its source, and what the depth images hold.
+void print_recording(const RgbdSequence& recording);
+/// The same as fields: calibration, camera, depth_factor, median_depth_m, depth_share.
+nlohmann::ordered_json recording_json(const RgbdSequence& recording);
+nlohmann::ordered_json camera_json(const Camera& camera);
+
+/// An estimate beside the true trajectory.
+struct TruthReport {
+  ErrorStatistics position;      ///< metres, aligned by SE(3): the ATE
+  double scale = 1.0;            ///< of an alignment by Sim(3): truth = scale * estimate
+  double rmse_with_scale = 0.0;  ///< metres, of that alignment
+  bool scale_is_wrong() const;   ///< by more than 10 %, and the truth shows it
+};
+/// Nothing where there is no truth, or too little of both to be aligned.
+std::optional<TruthReport> compare_with_truth(const RgbdSequence& recording,
+                                              const Trajectory& estimate);
+/// A line on stdout, and a sentence on stderr if the scale is wrong.
+void print_truth(const TruthReport& report, const Camera& camera);
+nlohmann::ordered_json truth_json(const std::optional<TruthReport>& report);
+
+}  // namespace dxslam::apps

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/run_settings.h"
+
+#include "apps/system_setup.h"
+#include "apps/usage.h"
+#include "core/error.h"
+
+namespace dxslam::apps {
+namespace {
+
+void check_map_settings(const RunSettings& settings, const SystemOptions& options) {
+  if (options.mode == "localization" && settings.map_in.empty()) {
+    throw InputError("mode localization has no map, expected --map-in FILE");
+  }
+  if (settings.autosave > 0 && settings.map_out.empty()) {
+    throw InputError("--autosave has nowhere to save to, expected --map-out FILE");
+  }
+  if (settings.thumbnails && settings.map_out.empty()) {
+    throw InputError("--thumbnails has no map to be put into, expected --map-out FILE");
+  }
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunSettings& settings) {
+  command.add_option("--format", settings.reader.format, "auto, tum, 7scenes, openloris or folder")
+      ->capture_default_str();
+  command.add_option("--calibration", settings.reader.calibration,
+                     "Camera preset or YAML file (default: by format)");
+  command.add_option("--config", settings.config, "YAML file; see `dxslam config dump`");
+  command.add_option("--features", settings.features, "Extractor name or model manifest");
+  command.add_option("--mode", settings.mode, "slam, or localization in the map of --map-in");
+  command.add_option("--map-in", settings.map_in, "Go on with this map");
+  command.add_option("--map-out", settings.map_out, "Save the map here");
+  command
+      .add_option("--autosave", settings.autosave,
+                  "Save it after every so many keyframes as well, not only at the end")
+      ->check(whole_number(1));
+  command.add_option("--vocabulary", settings.vocabulary,
+                     "FBoW or DBoW2 file; none: loops by global descriptor alone");
+  command.add_flag("--no-loop-closing", settings.no_loop_closing, "Do not look for loops");
+  command.add_option("--stride", settings.stride, "Use every n-th frame")->check(whole_number(1));
+  command.add_flag("--deterministic", settings.deterministic,
+                   "One thread, exact arithmetic: the same result every time");
+}
+
+SystemOptions system_options_of(const RunSettings& settings) {
+  SystemOptions options = load_system_options(
+      {settings.config, settings.features, settings.mode, settings.deterministic});
+  if (!settings.vocabulary.empty()) options.vocabulary = settings.vocabulary;
+  if (settings.no_loop_closing) options.close_loops = false;
+  check_map_settings(settings, options);
+  return options;
+}
+
+}  // namespace dxslam::apps

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "apps/session.h"
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <thread>
+
+#include "apps/commands.h"
+#include "apps/console.h"
+#include "core/error.h"
+#include "features/extractor_factory.h"
+
+namespace dxslam::apps {
+namespace {
+
+constexpr double kMinTrackedShare = 0.1;  // below it the run counts as failed
+constexpr std::chrono::milliseconds kSlice{20};
+constexpr int kThumbnailsTidied = 100;  // keyframes between two times that old ones are let go
+
+// Everything that `run` and `lifelong` write into --out: the one replaces what the other wrote.
+ResultFiles result_files() {
+  return {{"trajectory.txt", "trajectory_online.txt", "trajectory_map[0-9]*.txt", "keyframes.txt",
+           "map.ply", "trajectory.svg", "summary.json", "online_[0-9]*.txt", "dxslam_*.txt",
+           "lifelong.json"},
+          {"summary.json", "lifelong.json"},
+          {"trajectory.txt", "online_[0-9]*.txt"}};
+}
+
+// Something that is loaded in a thread of its own, for which nobody waits after a stop.
+template <class Value>
+class Loading {
+ public:
+  explicit Loading(std::function<Value()> load) {
+    std::packaged_task<Value()> task(std::move(load));
+    loaded_ = task.get_future();
+    thread_ = std::thread(std::move(task));
+  }
+  ~Loading() { wait(); }
+  Loading(const Loading&) = delete;
+  Loading& operator=(const Loading&) = delete;
+
+  /// False at a stop; then the process ends without waiting for the thread.
+  bool wait() {
+    if (!thread_.joinable()) return true;
+    while (loaded_.wait_for(kSlice) != std::future_status::ready) {
+      if (!stop_requested()) continue;
+      abandon_thread();
+      thread_.detach();
+      return false;
+    }
+    thread_.join();
+    return true;
+  }
+  /// After wait(). Throws what loading threw.
+  Value get() { return loaded_.get(); }
+
+ private:
+  std::future<Value> loaded_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+Session::Session(const RunSettings& settings)
+    : settings_(settings), options_(system_options_of(settings)) {}
+
+void Session::claim_targets() {
+  if (!settings_.out.empty()) folder_.emplace(settings_.out, result_files());
+  if (!settings_.map_out.empty()) require_map_target(settings_.map_out);  // may lie in the folder
+  unsaved_.emplace();
+}
+
+std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallback on_frame) {
+  Loading<std::unique_ptr<FeatureExtractor>> network(
+      [features = options_.features, extractor = options_.extractor] {
+        return make_extractor(features, extractor);
+      });
+  std::optional<Loading<StoredMap>> map_in;
+  if (!settings_.map_in.empty()) {
+    map_in.emplace([path = settings_.map_in] { return load_map(path); });
+  }
+  if ((map_in && !map_in->wait()) || !network.wait()) return nullptr;
+  std::optional<StoredMap> stored;
+  if (map_in) stored.emplace(map_in->get());
+  auto system = std::make_unique<System>(camera, network.get(), options_,
+                                         [this, on_frame = std::move(on_frame)](const auto& frame) {
+                                           first_pose_.note(frame);
+                                           thumbnails_->note(frame);
+                                           on_frame(frame);
+                                         });
+  header_ = map_header(camera, system->extractor());
+  std::vector<std::string> pictures;
+  if (stored) {
+    pictures =
+        hand_over(std::move(*stored), *system, settings_.map_in, header_, options_.mode == "slam");
+  }
+  thumbnails_.emplace(settings_.thumbnails, std::move(pictures));
+  saver_.emplace(settings_.map_out, header_);
+  if (settings_.autosave > 0 || settings_.thumbnails) {
+    const int every = settings_.autosave > 0 ? settings_.autosave : kThumbnailsTidied;
+    system->set_autosave(every, [this](const Map& map, const std::vector<LoopEdge>& loops) {
+      thumbnails_->forget_culled(map);
+      if (settings_.autosave > 0) saver_->save(map, loops, thumbnails_->of(map));
+    });
+  }
+  system_ = system.get();
+  return system;
+}
+
+bool Session::process(const RgbdImage& image, bool live) {
+  first_pose_.offer(image);
+  thumbnails_->offer(image);
+  if (live) return system_->try_process(image);
+  system_->process(image);
+  return true;
+}
+
+void Session::finish() {
+  if (system_ != nullptr) system_->finish([] { return !stop_requested(); });
+}
+
+std::optional<std::string> Session::why_no_pose() const {
+  return first_pose_.why_none(options_, !settings_.map_in.empty(), stop_requested());
+}
+
+void Session::save_map(OutputSteps& steps) {
+  if (settings_.map_out.empty()) return;
+  if (system_ == nullptr || system_->map().keyframe_count() == 0) {
+    warn("{}: not written, for the map is empty", settings_.map_out);
+    return;
+  }
+  steps.run([&] {
+    saver_->finish();
+    save_system_map(settings_.map_out, header_, system_->map(), system_->backend().closed_loops(),
+                    thumbnails_->of(system_->map()));
+  });
+}
+
+int judge_tracking(std::size_t tracked, std::size_t frames,
+                   const std::optional<std::string>& why_no_pose) {
+  if (why_no_pose) {
+    warn("no frame was tracked: {}", *why_no_pose);
+    return kTrackingFailed;
+  }
+  if (static_cast<double>(tracked) >= kMinTrackedShare * static_cast<double>(frames)) {
+    return kSuccess;
+  }
+  warn("only {} of {} frames were tracked", tracked, frames);
+  return kTrackingFailed;
+}
+
+}  // namespace dxslam::apps

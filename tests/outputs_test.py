@@ -1,0 +1,336 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright 2026 The dxslam authors
+"""What `dxslam run` and `dxslam lifelong` leave on the disk when something goes wrong: no pose, outputs
+that cannot be written, a start that fails, a kill, two runs at once.
+
+usage: outputs_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
+"""
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
+TIMEOUT = 300
+FRAMES = 30
+
+BAD_INPUT, TRACKING_FAILED, INTERRUPTED = 3, 4, 5
+RESULTS = {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "trajectory.svg",
+           "summary.json"}
+
+
+def dxslam(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          errors="replace", stdin=subprocess.DEVNULL, timeout=TIMEOUT)
+
+
+def rows(file):
+    return [line.split() for line in Path(file).read_text().splitlines() if not line.startswith("#")]
+
+
+def names(folder):
+    return {path.name for path in Path(folder).iterdir()}
+
+
+class Recorded(unittest.TestCase):
+    """Tests that share one small recording, which they must not change, and a folder each."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="dxslam_outputs_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.shared = Path(folder.name)
+        cls.recording = cls.shared / "recording"
+        done = dxslam("synth", cls.recording, "--frames", FRAMES, "--width", 320, "--height", 240)
+        if done.returncode:
+            raise RuntimeError(f"dxslam synth: exit {done.returncode}: {done.stderr}")
+
+    def setUp(self):
+        self.folder = self.shared / self.id().split(".")[-1]
+        self.folder.mkdir()
+        self.out = self.folder / "out"
+
+    def run_orb(self, *options, recording=None):
+        return dxslam("run", recording or self.recording, "--features", "orb", *options)
+
+    def ends(self, done, code, *said):
+        self.assertEqual(done.returncode, code, done.stderr)
+        for text in said:
+            self.assertIn(text, done.stderr)
+        return done
+
+    def refused(self, done, *said):
+        self.ends(done, BAD_INPUT, *said)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+
+    def copy(self):
+        copy = self.folder / "recording"
+        shutil.copytree(self.recording, copy)
+        return copy
+
+    def without_depth_readings(self):
+        """The recording with depth images that hold no reading."""
+        copy = self.copy()
+        nothing = self.shared / "nothing.png"
+        if not nothing.exists():
+            nothing.write_bytes(empty_png(320, 240, 16))
+        for image in (copy / "depth").iterdir():
+            shutil.copy(nothing, image)
+        return copy
+
+    def black(self):
+        copy = self.copy()
+        for image in (copy / "rgb").iterdir():
+            image.write_bytes(empty_png(320, 240, 8))
+        return copy
+
+    def summary(self):
+        return json.loads((self.out / "summary.json").read_text())
+
+
+def empty_png(width, height, bits):
+    import struct
+    import zlib
+
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data +
+                struct.pack(">I", zlib.crc32(kind + data)))
+    row = b"\0" + b"\0" * (width * bits // 8)
+    return (b"\x89PNG\r\n\x1a\n" +
+            chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, 0, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(row * height)) + chunk(b"IEND", b""))
+
+
+class NoPose(Recorded):
+    def test_every_file_is_written_and_says_why(self):
+        cases = {"no depth reading": self.without_depth_readings()}
+        shutil.move(cases["no depth reading"], self.folder / "zero")
+        cases["no depth reading"] = self.folder / "zero"
+        cases["too few keypoints"] = self.black()
+        for reason, recording in cases.items():
+            with self.subTest(reason):
+                self.ends(self.run_orb("--out", self.out, recording=recording), TRACKING_FAILED,
+                          f"no frame was tracked: {reason}")
+                self.assertEqual(names(self.out), RESULTS)
+                self.assertEqual(rows(self.out / "trajectory.txt"), [])
+                self.assertIn(reason, self.summary()["no_pose_reason"])
+                self.assertIn("no pose", (self.out / "trajectory.svg").read_text())
+
+    def test_a_recording_without_depth_is_refused(self):
+        colour = self.folder / "colour"
+        colour.mkdir()
+        for image in (self.recording / "rgb").iterdir():
+            shutil.copy(image, colour)
+        shutil.copy(self.recording / "calibration.yaml", colour)
+        self.refused(self.run_orb("--out", self.out, recording=colour), "no depth images")
+        self.refused(dxslam("lifelong", colour, "--out", self.out), "no depth images")
+        self.assertFalse(self.out.exists())
+
+    def test_an_empty_map_is_never_saved(self):
+        home = self.folder / "home.dxmap"
+        self.ends(self.run_orb("--map-out", home), 0)
+        before = home.read_bytes()
+        black = self.black()
+        self.ends(self.run_orb("--map-out", home, recording=black), TRACKING_FAILED,
+                  "the map is empty")
+        self.assertEqual(home.read_bytes(), before)
+        new = self.folder / "new.dxmap"
+        self.ends(self.run_orb("--map-out", new, recording=black), TRACKING_FAILED)
+        self.ends(dxslam("lifelong", black, "--features", "orb", "--out", self.out, "--map-out", new),
+                  TRACKING_FAILED, "the map is empty", "no frame was tracked")
+        self.assertFalse(new.exists())
+        self.assertEqual(json.loads((self.out / "lifelong.json").read_text())[0]["localized"], 0)
+
+    def test_localization_that_finds_nothing(self):
+        home = self.folder / "home.dxmap"
+        self.ends(self.run_orb("--map-out", home), 0)
+        self.ends(self.run_orb("--map-in", home, "--mode", "localization", "--out", self.out,
+                               recording=self.black()), TRACKING_FAILED, "no frame was tracked")
+        self.assertEqual(names(self.out), RESULTS)
+
+    def test_a_stop_right_after_the_start(self):
+        for command in (["run", self.recording], ["lifelong", self.recording, self.recording]):
+            for delay in (0.0, 0.03, 0.1, 0.3):
+                with self.subTest(command=command[0], delay=delay):
+                    process = subprocess.Popen([PROGRAM, *map(str, command), "--out", self.out],
+                                               stdout=subprocess.DEVNULL,
+                                               stderr=subprocess.PIPE, stdin=subprocess.DEVNULL)
+                    with process:
+                        time.sleep(delay + 0.05)
+                        process.send_signal(signal.SIGTERM)
+                        said = process.stderr.read().decode()
+                    # At the very first the signal may meet a process that is not up yet.
+                    self.assertIn(process.returncode, (INTERRUPTED, -signal.SIGTERM), said)
+                    self.assertNotIn("internal", said)
+
+
+class LastResults(Recorded):
+    def test_a_start_that_fails_touches_nothing(self):
+        self.ends(self.run_orb("--out", self.out), 0)
+        before = {name: (self.out / name).read_bytes() for name in names(self.out)}
+        bad = self.folder / "bad.dxmap"
+        bad.write_text("x")
+        for wrong in (["--map-in", bad], ["--map-in", self.folder / "none.dxmap"],
+                      ["--vocabulary", bad], ["--features", "nosuch"], ["--mode", "both"],
+                      ["--map-out", self.folder / "missing" / "m.dxmap"],
+                      ["--config", self.folder / "none.yaml"]):
+            with self.subTest(wrong):
+                self.refused(dxslam("run", self.recording, "--out", self.out, *wrong))
+                self.assertEqual({name: (self.out / name).read_bytes() for name in names(self.out)},
+                                 before)
+
+    def test_all_results_are_replaced_and_nothing_else(self):
+        self.ends(dxslam("lifelong", self.recording, self.recording, "--features", "orb", "--out",
+                         self.out), 0)
+        self.assertIn("online_2.txt", names(self.out))
+        (self.out / "notes.txt").write_text("mine")
+        self.ends(dxslam("lifelong", self.recording, "--features", "orb", "--out", self.out), 0)
+        self.assertEqual(names(self.out),
+                         {"notes.txt", "online_1.txt", "dxslam_scene.txt", "lifelong.json"})
+        (self.out / "trajectory_map1.txt").write_text("# of an earlier run\n")
+        self.ends(self.run_orb("--out", self.out), 0)
+        self.assertEqual(names(self.out), RESULTS | {"notes.txt"})
+
+    def test_results_without_a_pose_keep_the_last_ones(self):
+        self.ends(self.run_orb("--out", self.out), 0)
+        before = rows(self.out / "trajectory.txt")
+        black = self.black()
+        for _ in range(2):
+            self.ends(self.run_orb("--out", self.out, recording=black), TRACKING_FAILED)
+            self.assertEqual(rows(self.out / "trajectory.txt"), [])
+            self.assertEqual(rows(self.out / "previous" / "trajectory.txt"), before)
+        self.ends(self.run_orb("--out", self.out), 0)
+        self.assertEqual(names(self.out), RESULTS)
+
+    def start_slowly(self):
+        """A run that has begun to track when this returns."""
+        process = subprocess.Popen([PROGRAM, "run", self.recording, "--features", "orb", "--out",
+                                    self.out, "--realtime"], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + TIMEOUT
+        trajectory = self.out / "trajectory.txt"
+        old = trajectory.stat().st_ino if trajectory.exists() else None
+        while (not trajectory.exists() or trajectory.stat().st_ino == old or
+               len(rows(trajectory)) < 3):
+            self.assertIsNone(process.poll(), "the run ended before it was stopped")
+            self.assertLess(time.monotonic(), deadline, "no pose appeared")
+            time.sleep(0.01)
+        return process
+
+    def test_two_runs_do_not_share_a_folder(self):
+        process = self.start_slowly()
+        self.refused(self.run_orb("--out", self.out), str(self.out), "in use by another run")
+        self.assertEqual(process.wait(TIMEOUT), 0)
+        self.assertEqual(names(self.out), RESULTS)
+
+    def test_a_kill_leaves_both_apart(self):
+        self.ends(self.run_orb("--out", self.out), 0)
+        before = {name: (self.out / name).read_bytes() for name in names(self.out)}
+        for _ in range(2):
+            process = self.start_slowly()
+            process.kill()
+            process.wait(TIMEOUT)
+            self.assertTrue(all(len(row) == 8 for row in rows(self.out / "trajectory.txt")))
+            self.assertNotIn("summary.json", names(self.out))
+            previous = self.out / "previous"
+            self.assertEqual({name: (previous / name).read_bytes() for name in names(previous)},
+                             before)
+        self.ends(self.run_orb("--out", self.out), 0)
+        self.assertEqual(names(self.out), RESULTS)
+
+    def test_random_kills(self):
+        """No trajectory is lost: the last whole one, or a newer whole one, is always there."""
+        self.ends(self.run_orb("--out", self.out), 0)
+        whole = len(rows(self.out / "trajectory.txt"))
+        source = random.Random(5)
+        for _ in range(12):
+            process = subprocess.Popen([PROGRAM, "run", self.recording, "--features", "orb", "--out",
+                                        self.out], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+            time.sleep(source.uniform(0.02, 0.8))
+            process.kill()
+            process.wait(TIMEOUT)
+            kept = [folder / "trajectory.txt" for folder in
+                    (self.out, self.out / "previous", self.out / ".dxslam-previous")]
+            counts = [len(rows(file)) for file in kept if file.exists()]
+            self.assertGreaterEqual(max(counts), whole - 1)
+
+
+class FailedOutputs(Recorded):
+    def test_targets_are_tried_before_the_first_frame(self):
+        folder = self.folder / "folder"
+        folder.mkdir()
+        photo = self.folder / "photo.jpg"
+        photo.write_bytes(b"\xff\xd8 not a map")
+        for command in (["run", self.recording], ["lifelong", self.recording]):
+            for target in (self.folder / "missing" / "m.dxmap", folder, photo):
+                with self.subTest(command=command[0], target=target.name):
+                    self.refused(dxslam(*command, "--features", "orb", "--out", self.out,
+                                        "--map-out", target), str(target))
+                    self.assertFalse(self.out.exists())
+        self.assertEqual(photo.read_bytes(), b"\xff\xd8 not a map")
+        self.refused(self.run_orb("--out", photo), str(photo))
+
+    def test_what_can_be_written_is_written_and_all_failures_are_listed(self):
+        """The targets become unusable while the program runs."""
+        limited = f"ulimit -f 8; exec {PROGRAM} run {self.recording} --features orb --out {self.out} " \
+                  f"--map-out {self.folder / 'm.dxmap'} --autosave 1"
+        done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, timeout=TIMEOUT)
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        lines = done.stderr.splitlines()
+        self.assertEqual(sum("autosave" in line for line in lines), 1, done.stderr)
+        self.assertTrue(any("map.ply" in line for line in lines), done.stderr)
+        self.assertTrue(any("m.dxmap: cannot" in line for line in lines), done.stderr)
+        self.assertGreater(len(rows(self.out / "trajectory.txt")), FRAMES // 2)
+        self.assertIn("keyframes.txt", names(self.out))
+        self.assertFalse((self.folder / "m.dxmap").exists())
+
+
+class Told(Recorded):
+    def test_calibration_and_depth_are_told(self):
+        done = self.ends(self.run_orb("--out", self.out), 0, "calibration.yaml", "units per metre")
+        self.assertIn("ATE", done.stdout)
+        summary = self.summary()
+        self.assertTrue(summary["calibration"].endswith("calibration.yaml"))
+        self.assertGreater(summary["depth_factor"], 0)
+        self.assertGreater(summary["median_depth_m"], 0.3)
+        self.assertGreater(summary["depth_share"], 0.5)
+        self.assertLess(summary["ate"]["rmse"], 0.1)
+        self.assertAlmostEqual(summary["ate"]["sim3_scale"], 1.0, delta=0.1)
+
+    def test_a_wrong_depth_factor_shows(self):
+        copy = self.copy()
+        file = copy / "calibration.yaml"
+        lines = [f"depth_factor: {float(line.split()[1]) / 2}" if line.startswith("depth_factor")
+                 else line for line in file.read_text().splitlines()]
+        file.write_text("\n".join(lines) + "\n")
+        self.ends(self.run_orb("--out", self.out, recording=copy), 0, "depth_factor of")
+        self.assertAlmostEqual(self.summary()["ate"]["sim3_scale"], 0.5, delta=0.1)
+
+    def test_names_that_are_not_utf8(self):
+        name = os.fsdecode(b"r\xe4um")
+        recording = self.folder / name
+        shutil.copytree(self.recording, recording)
+        self.ends(self.run_orb("--out", self.out, recording=recording), 0)
+        self.assertEqual(names(self.out), RESULTS)
+        self.assertEqual(self.summary()["sequence"], "r\ufffdum")
+        week = self.folder / "week"
+        self.ends(dxslam("lifelong", recording, "--features", "orb", "--out", week), 0)
+        self.assertEqual(json.loads((week / "lifelong.json").read_text())[0]["sequence"],
+                         "r\ufffdum")
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
