@@ -158,6 +158,11 @@ class Config(Recorded):
         wrong.write_text(re.sub(r"(?m)^(queued_frames):.*$", r"\1: 0", text))
         self.refuse(self.run_with(wrong), "queued_frames", "range.yaml")
 
+    def test_methods_of_the_loop_experiment_are_refused(self):
+        wrong = self.folder / "method.yaml"
+        wrong.write_text("loop_detection:\n  method: hf-bow-global+geometry\n")
+        self.refuse(self.run_with(wrong), "loop_detection.method", "+geometry")
+
     def test_missing_file_is_refused(self):
         self.refuse(self.run_with(self.folder / "nowhere.yaml"), "nowhere.yaml")
 

@@ -52,6 +52,13 @@ class Relocalize(Recorded):
         self.assertGreater(len(distances), 0)
         self.assertLess(max(distances), 0.5)
 
+    def test_true_poses_of_a_recording_are_not_replaced(self):
+        out = self.folder / "recording_with_poses"
+        out.mkdir()
+        (out / "poses.txt").write_text("true poses")
+        self.refuse(self.relocalize(out), "poses.txt", "--out")
+        self.assertEqual((out / "poses.txt").read_text(), "true poses")
+
     def test_unusable_maps_are_refused(self):
         no_map = self.folder / "no_map.dxm"
         no_map.write_text("not a map")
