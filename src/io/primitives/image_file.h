@@ -13,7 +13,7 @@ namespace dxslam {
 // Reading of image files that may be broken: PNG, JPEG, BMP, PGM, PPM, TIFF and EXR, told apart by
 // their content. The functions throw InputError, with the file and what is wrong, for a missing,
 // truncated or damaged file and for other types. Nothing is decoded before its size is known to be
-// the expected one and what it costs is within bounds (image_codecs/image_codec.h). They print
+// the expected one and what it costs is within bounds (io/primitives/limits.h). They print
 // nothing and may be called from any thread. Pixels are as stored: an orientation in the EXIF data
 // is not applied, as the calibration is that of the sensor.
 

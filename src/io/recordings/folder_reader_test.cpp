@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/primitives/test_folder.h"
+#include "io/primitives/text_file.h"
 #include "io/recordings/sequence_reader.h"
 
 namespace dxslam {
@@ -44,6 +45,30 @@ TEST(FolderReader, ReadsImagesWithoutDepthOrPoses) {
   EXPECT_TRUE(image->depth.empty());
   EXPECT_FALSE(sequence->facts().has_depth);
   expect_input_error([&] { require_depth(*sequence); }, {"no depth images"});
+}
+
+// Depth of floats is in metres, whatever the depth factor says.
+TEST(FolderReader, ReadsDepthInMetresAndColourOfOtherKinds) {
+  const TestFolder folder;
+  const std::string pictures = std::string(DXSLAM_SOURCE_DIR) + "/tests/data/images/";
+  for (const auto& [name, picture] : {std::pair("images/1.bmp", "rgb.bmp"),
+                                      {"images/2.tif", "rgb_packbits.tif"},
+                                      {"images/3.png", "rgb16.png"},
+                                      {"depth/1.exr", "f32.exr"},
+                                      {"depth/2.tif", "f32_lzw.tif"},
+                                      {"depth/3.pgm", "u16.pgm"}}) {
+    folder.write(name, read_file(pictures + picture, "a picture"));
+  }
+  folder.write("K.txt", "60 0 20\n0 61 15\n0 0 1\n");
+  const auto sequence = open_sequence(folder.path());
+  ASSERT_EQ(sequence->size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto image = sequence->read(i);
+    ASSERT_TRUE(image.has_value()) << i;
+    EXPECT_EQ(image->color.type(), CV_8UC3) << i;
+    ASSERT_EQ(image->depth.type(), CV_32FC1) << i;
+    EXPECT_NEAR(image->depth.at<float>(10, 20), 0.9F, 1e-6) << i;
+  }
 }
 
 TEST(FolderReader, SkipsAFrameWithoutItsDepth) {
