@@ -160,6 +160,6 @@ cv::Mat decode(std::string_view bytes) {
 
 }  // namespace
 
-const ImageCodec kBmpCodec = {"BMP", recognises, inspect, decode};
+const ImageCodec kBmpCodec = {recognises, inspect, decode};
 
 }  // namespace dxslam

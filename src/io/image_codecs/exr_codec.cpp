@@ -185,6 +185,6 @@ cv::Mat decode(std::string_view bytes) {
 
 }  // namespace
 
-const ImageCodec kExrCodec = {"EXR", recognises, inspect, decode};
+const ImageCodec kExrCodec = {recognises, inspect, decode};
 
 }  // namespace dxslam

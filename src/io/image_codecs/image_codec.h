@@ -14,7 +14,6 @@ namespace dxslam {
 /// One kind of image file. Its functions take the whole file, keep no state, may be called from
 /// any thread and print nothing. They throw InputError with what is wrong, without the file's name.
 struct ImageCodec {
-  const char* name;  ///< as in "truncated PNG"
   /// From the first 16 bytes or fewer.
   bool (*recognises)(std::string_view start);
   /// Width and height as the header says, unchecked but not negative. Finds out cheaply whether

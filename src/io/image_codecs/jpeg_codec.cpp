@@ -178,7 +178,7 @@ bool write_image(jpeg_compress_struct& info, Errors& errors, const cv::Mat& imag
 
 }  // namespace
 
-const ImageCodec kJpegCodec = {"JPEG", recognises, inspect, decode};
+const ImageCodec kJpegCodec = {recognises, inspect, decode};
 
 std::string encode_jpeg(const cv::Mat& image, int quality) {
   require(!image.empty() && (image.type() == CV_8UC1 || image.type() == CV_8UC3),

@@ -153,7 +153,7 @@ bool write_image(png_structp png, png_infop info, const cv::Mat& image, int leve
 
 }  // namespace
 
-const ImageCodec kPngCodec = {"PNG", recognises, inspect, decode};
+const ImageCodec kPngCodec = {recognises, inspect, decode};
 
 std::string encode_png(const cv::Mat& image, int level) {
   require(!image.empty() &&

@@ -106,6 +106,6 @@ cv::Mat decode(std::string_view bytes) {
 
 }  // namespace
 
-const ImageCodec kPnmCodec = {"PNM", recognises, inspect, decode};
+const ImageCodec kPnmCodec = {recognises, inspect, decode};
 
 }  // namespace dxslam

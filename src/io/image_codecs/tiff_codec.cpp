@@ -343,6 +343,6 @@ cv::Mat decode(std::string_view bytes) {
 
 }  // namespace
 
-const ImageCodec kTiffCodec = {"TIFF", recognises, inspect, decode};
+const ImageCodec kTiffCodec = {recognises, inspect, decode};
 
 }  // namespace dxslam

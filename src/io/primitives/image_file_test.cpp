@@ -196,7 +196,7 @@ void mend_png(std::string& bytes) {
 TEST(ImageFile, SurvivesRandomDamage) {
   const TestFolder folder;
   const char* wanted = std::getenv("DXSLAM_MUTATIONS");
-  const int mutations = wanted != nullptr ? std::atoi(wanted) : 150;
+  const int mutations = wanted != nullptr ? std::atoi(wanted) : 60;
   const ExpectedSize camera{{40, 30}, "the test"};
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(DXSLAM_SOURCE_DIR) + "/tests/data/images")) {
