@@ -11,51 +11,44 @@ import os
 import random
 import shutil
 import signal
+import struct
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
-from pathlib import Path
+import zlib
 
-ROOT = Path(__file__).resolve().parent.parent
-PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
-TIMEOUT = 300
+from cli_test import BAD_INPUT, INTERRUPTED, PROGRAM, TIMEOUT, TRACKING_FAILED, Recorded, dxslam, \
+    poses
+
 FRAMES = 30
-
-BAD_INPUT, TRACKING_FAILED, INTERRUPTED = 3, 4, 5
+WIDTH, HEIGHT = 640, 480  # of the recording
 RESULTS = {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "trajectory.svg",
            "summary.json"}
 
 
-def dxslam(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          errors="replace", stdin=subprocess.DEVNULL, timeout=TIMEOUT)
-
-
-def rows(file):
-    return [line.split() for line in Path(file).read_text().splitlines() if not line.startswith("#")]
-
-
 def names(folder):
-    return {path.name for path in Path(folder).iterdir()}
+    return {path.name for path in folder.iterdir()}
 
 
-class Recorded(unittest.TestCase):
-    """Tests that share one small recording, which they must not change, and a folder each."""
+def empty_png(bits):
+    """A grey image of zeros."""
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data +
+                struct.pack(">I", zlib.crc32(kind + data)))
+    row = b"\0" + b"\0" * (WIDTH * bits // 8)
+    return (b"\x89PNG\r\n\x1a\n" +
+            chunk(b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, bits, 0, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(row * HEIGHT)) + chunk(b"IEND", b""))
 
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="dxslam_outputs_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.shared = Path(folder.name)
-        cls.recording = cls.shared / "recording"
-        done = dxslam("synth", cls.recording, "--frames", FRAMES, "--width", 320, "--height", 240)
-        if done.returncode:
-            raise RuntimeError(f"dxslam synth: exit {done.returncode}: {done.stderr}")
+
+class Outputs(Recorded):
+    """A folder for each test, beside the recording."""
+
+    frames = FRAMES
 
     def setUp(self):
-        self.folder = self.shared / self.id().split(".")[-1]
+        self.folder = type(self).folder / self.id().split(".")[-1]
         self.folder.mkdir()
         self.out = self.folder / "out"
 
@@ -68,60 +61,37 @@ class Recorded(unittest.TestCase):
             self.assertIn(text, done.stderr)
         return done
 
-    def refused(self, done, *said):
-        self.ends(done, BAD_INPUT, *said)
-        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-
-    def copy(self):
-        copy = self.folder / "recording"
+    def copy(self, name="recording"):
+        copy = self.folder / name
         shutil.copytree(self.recording, copy)
         return copy
 
-    def without_depth_readings(self):
+    def without_readings(self):
         """The recording with depth images that hold no reading."""
-        copy = self.copy()
-        nothing = self.shared / "nothing.png"
-        if not nothing.exists():
-            nothing.write_bytes(empty_png(320, 240, 16))
+        copy = self.copy("zero")
         for image in (copy / "depth").iterdir():
-            shutil.copy(nothing, image)
+            image.write_bytes(empty_png(16))
         return copy
 
     def black(self):
-        copy = self.copy()
+        copy = self.copy("black")
         for image in (copy / "rgb").iterdir():
-            image.write_bytes(empty_png(320, 240, 8))
+            image.write_bytes(empty_png(8))
         return copy
 
     def summary(self):
         return json.loads((self.out / "summary.json").read_text())
 
 
-def empty_png(width, height, bits):
-    import struct
-    import zlib
-
-    def chunk(kind, data):
-        return (struct.pack(">I", len(data)) + kind + data +
-                struct.pack(">I", zlib.crc32(kind + data)))
-    row = b"\0" + b"\0" * (width * bits // 8)
-    return (b"\x89PNG\r\n\x1a\n" +
-            chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, 0, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(row * height)) + chunk(b"IEND", b""))
-
-
-class NoPose(Recorded):
+class NoPose(Outputs):
     def test_every_file_is_written_and_says_why(self):
-        cases = {"no depth reading": self.without_depth_readings()}
-        shutil.move(cases["no depth reading"], self.folder / "zero")
-        cases["no depth reading"] = self.folder / "zero"
-        cases["too few keypoints"] = self.black()
+        cases = {"no depth reading": self.without_readings(), "too few keypoints": self.black()}
         for reason, recording in cases.items():
             with self.subTest(reason):
                 self.ends(self.run_orb("--out", self.out, recording=recording), TRACKING_FAILED,
                           f"no frame was tracked: {reason}")
                 self.assertEqual(names(self.out), RESULTS)
-                self.assertEqual(rows(self.out / "trajectory.txt"), [])
+                self.assertEqual(poses(self.out / "trajectory.txt"), [])
                 self.assertIn(reason, self.summary()["no_pose_reason"])
                 self.assertIn("no pose", (self.out / "trajectory.svg").read_text())
 
@@ -131,8 +101,8 @@ class NoPose(Recorded):
         for image in (self.recording / "rgb").iterdir():
             shutil.copy(image, colour)
         shutil.copy(self.recording / "calibration.yaml", colour)
-        self.refused(self.run_orb("--out", self.out, recording=colour), "no depth images")
-        self.refused(dxslam("lifelong", colour, "--out", self.out), "no depth images")
+        self.refuse(self.run_orb("--out", self.out, recording=colour), "no depth images")
+        self.refuse(dxslam("lifelong", colour, "--out", self.out), "no depth images")
         self.assertFalse(self.out.exists())
 
     def test_an_empty_map_is_never_saved(self):
@@ -173,7 +143,7 @@ class NoPose(Recorded):
                     self.assertNotIn("internal", said)
 
 
-class LastResults(Recorded):
+class LastResults(Outputs):
     def test_a_start_that_fails_touches_nothing(self):
         self.ends(self.run_orb("--out", self.out), 0)
         before = {name: (self.out / name).read_bytes() for name in names(self.out)}
@@ -184,7 +154,7 @@ class LastResults(Recorded):
                       ["--map-out", self.folder / "missing" / "m.dxmap"],
                       ["--config", self.folder / "none.yaml"]):
             with self.subTest(wrong):
-                self.refused(dxslam("run", self.recording, "--out", self.out, *wrong))
+                self.refuse(dxslam("run", self.recording, "--out", self.out, *wrong))
                 self.assertEqual({name: (self.out / name).read_bytes() for name in names(self.out)},
                                  before)
 
@@ -202,12 +172,12 @@ class LastResults(Recorded):
 
     def test_results_without_a_pose_keep_the_last_ones(self):
         self.ends(self.run_orb("--out", self.out), 0)
-        before = rows(self.out / "trajectory.txt")
+        before = poses(self.out / "trajectory.txt")
         black = self.black()
         for _ in range(2):
             self.ends(self.run_orb("--out", self.out, recording=black), TRACKING_FAILED)
-            self.assertEqual(rows(self.out / "trajectory.txt"), [])
-            self.assertEqual(rows(self.out / "previous" / "trajectory.txt"), before)
+            self.assertEqual(poses(self.out / "trajectory.txt"), [])
+            self.assertEqual(poses(self.out / "previous" / "trajectory.txt"), before)
         self.ends(self.run_orb("--out", self.out), 0)
         self.assertEqual(names(self.out), RESULTS)
 
@@ -222,7 +192,7 @@ class LastResults(Recorded):
         trajectory = self.out / "trajectory.txt"
         old = trajectory.stat().st_ino if trajectory.exists() else None
         while (not trajectory.exists() or trajectory.stat().st_ino == old or
-               len(rows(trajectory)) < 3):
+               len(poses(trajectory)) < 3):
             self.assertIsNone(process.poll(), "the run ended before it was stopped")
             self.assertLess(time.monotonic(), deadline, "no pose appeared")
             time.sleep(0.01)
@@ -230,7 +200,7 @@ class LastResults(Recorded):
 
     def test_two_runs_do_not_share_a_folder(self):
         process = self.start_slowly()
-        self.refused(self.run_orb("--out", self.out), str(self.out), "in use by another run")
+        self.refuse(self.run_orb("--out", self.out), str(self.out), "in use by another run")
         self.assertEqual(process.wait(TIMEOUT), 0)
         self.assertEqual(names(self.out), RESULTS)
 
@@ -241,7 +211,7 @@ class LastResults(Recorded):
             process = self.start_slowly()
             process.kill()
             process.wait(TIMEOUT)
-            self.assertTrue(all(len(row) == 8 for row in rows(self.out / "trajectory.txt")))
+            self.assertTrue(all(len(row) == 8 for row in poses(self.out / "trajectory.txt")))
             self.assertNotIn("summary.json", names(self.out))
             previous = self.out / "previous"
             self.assertEqual({name: (previous / name).read_bytes() for name in names(previous)},
@@ -252,7 +222,7 @@ class LastResults(Recorded):
     def test_random_kills(self):
         """No trajectory is lost: the last whole one, or a newer whole one, is always there."""
         self.ends(self.run_orb("--out", self.out), 0)
-        whole = len(rows(self.out / "trajectory.txt"))
+        whole = len(poses(self.out / "trajectory.txt"))
         source = random.Random(5)
         for _ in range(12):
             process = subprocess.Popen([PROGRAM, "run", self.recording, "--features", "orb", "--out",
@@ -263,11 +233,11 @@ class LastResults(Recorded):
             process.wait(TIMEOUT)
             kept = [folder / "trajectory.txt" for folder in
                     (self.out, self.out / "previous", self.out / ".dxslam-previous")]
-            counts = [len(rows(file)) for file in kept if file.exists()]
+            counts = [len(poses(file)) for file in kept if file.exists()]
             self.assertGreaterEqual(max(counts), whole - 1)
 
 
-class FailedOutputs(Recorded):
+class FailedOutputs(Outputs):
     def test_targets_are_tried_before_the_first_frame(self):
         folder = self.folder / "folder"
         folder.mkdir()
@@ -276,11 +246,11 @@ class FailedOutputs(Recorded):
         for command in (["run", self.recording], ["lifelong", self.recording]):
             for target in (self.folder / "missing" / "m.dxmap", folder, photo):
                 with self.subTest(command=command[0], target=target.name):
-                    self.refused(dxslam(*command, "--features", "orb", "--out", self.out,
+                    self.refuse(dxslam(*command, "--features", "orb", "--out", self.out,
                                         "--map-out", target), str(target))
                     self.assertFalse(self.out.exists())
         self.assertEqual(photo.read_bytes(), b"\xff\xd8 not a map")
-        self.refused(self.run_orb("--out", photo), str(photo))
+        self.refuse(self.run_orb("--out", photo), str(photo))
 
     def test_what_can_be_written_is_written_and_all_failures_are_listed(self):
         """The targets become unusable while the program runs."""
@@ -293,12 +263,12 @@ class FailedOutputs(Recorded):
         self.assertEqual(sum("autosave" in line for line in lines), 1, done.stderr)
         self.assertTrue(any("map.ply" in line for line in lines), done.stderr)
         self.assertTrue(any("m.dxmap: cannot" in line for line in lines), done.stderr)
-        self.assertGreater(len(rows(self.out / "trajectory.txt")), FRAMES // 2)
+        self.assertGreater(len(poses(self.out / "trajectory.txt")), FRAMES // 2)
         self.assertIn("keyframes.txt", names(self.out))
         self.assertFalse((self.folder / "m.dxmap").exists())
 
 
-class Told(Recorded):
+class Told(Outputs):
     def test_calibration_and_depth_are_told(self):
         done = self.ends(self.run_orb("--out", self.out), 0, "calibration.yaml", "units per metre")
         self.assertIn("ATE", done.stdout)
