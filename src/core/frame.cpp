@@ -10,6 +10,8 @@ namespace dxslam {
 namespace {
 
 constexpr auto kNearest = static_cast<float>(Camera::kNearest);
+// Sigma of the keypoint (docs/experiments.md).
+constexpr double kMaxDisparityError = 4.0;
 constexpr float kSameSurface = 0.02F;  // neighbours within 2 % of depth belong to one surface
 
 float depth_at(const cv::Mat& depth, float x, float y, double max_depth) {
@@ -75,6 +77,23 @@ FramePtr make_frame(const RgbdImage& image, const Features& features, const Came
     frame->sigmas.push_back(k.sigma);
   }
   return frame;
+}
+
+double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera) {
+  return frame.has_depth(keypoint) ? camera.bf() / static_cast<double>(frame.depths[keypoint])
+                                   : 0.0;
+}
+
+bool disparity_agrees(const Camera& camera, double disparity, double z, double sigma) {
+  if (z <= Camera::kNearest) return false;
+  return std::abs(disparity - camera.bf() / z) <= kMaxDisparityError * sigma;
+}
+
+double agreeing_disparity(const Frame& frame, std::size_t keypoint, const Camera& camera,
+                          double z) {
+  const double disparity = disparity_of(frame, keypoint, camera);
+  const double sigma = static_cast<double>(frame.sigmas[keypoint]);
+  return disparity_agrees(camera, disparity, z, sigma) ? disparity : 0.0;
 }
 
 }  // namespace dxslam

@@ -40,6 +40,17 @@ struct Frame {
 
 using FramePtr = std::shared_ptr<const Frame>;
 
+/// Disparity (see Camera::bf) of a keypoint for the optimisers; 0 where it has no depth.
+double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera);
+
+/// Whether a disparity is that of a point `z` metres ahead, by the `sigma` of its keypoint. A depth
+/// reading beside an edge is often that of another surface, while the pixel is right: then the
+/// optimisers are to go by the pixel alone.
+bool disparity_agrees(const Camera& camera, double disparity, double z, double sigma);
+
+/// disparity_of() a keypoint that is taken for a point `z` metres ahead; 0 where it disagrees.
+double agreeing_disparity(const Frame& frame, std::size_t keypoint, const Camera& camera, double z);
+
 /// Undistorts the keypoints and reads their depth: bilinear over the four neighbours where these
 /// agree, else the nearest pixel's reading, so that no depth is invented across an edge. Readings
 /// nearer than Camera::kNearest count as missing. Throws ContractError if colour, depth or

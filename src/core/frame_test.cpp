@@ -135,5 +135,18 @@ TEST_F(FrameTest, AcceptsAnImageWithoutKeypoints) {
   EXPECT_EQ(make_frame(image_, Features(), camera_)->size(), 0U);
 }
 
+TEST(AgreeingDisparity, IsThatOfThePointOrNone) {
+  Camera camera;
+  camera.fx = 500.0;
+  Frame frame;
+  frame.depths = {2.0F, 3.0F, 0.0F};
+  frame.sigmas = {1.0F, 1.0F, 1.0F};
+  EXPECT_NEAR(agreeing_disparity(frame, 0, camera, 2.0), camera.bf() / 2.0, 1e-9);
+  EXPECT_GT(agreeing_disparity(frame, 0, camera, 2.02), 0.0);
+  EXPECT_EQ(agreeing_disparity(frame, 1, camera, 2.0), 0.0) << "of a surface behind the point";
+  EXPECT_EQ(agreeing_disparity(frame, 2, camera, 2.0), 0.0) << "without a reading";
+  EXPECT_EQ(agreeing_disparity(frame, 0, camera, -2.0), 0.0) << "behind the camera";
+}
+
 }  // namespace
 }  // namespace dxslam

@@ -210,10 +210,10 @@ class LoopVerifier {
     std::vector<PoseObservation> observations;
     for (const Match& m : matches) {
       const auto k = static_cast<std::size_t>(m.b);
-      // Beside an edge the pixel may be right where the depth is that of another surface.
-      const bool use_depth = frame.has_depth(k) && depth_agrees(frame, camera_from_world, m);
-      observations.push_back({point(m.a).position, frame.pixels[k].cast<double>(),
-                              use_depth ? camera_.bf() / static_cast<double>(frame.depths[k]) : 0.0,
+      const Eigen::Vector3d& position = point(m.a).position;
+      const double z = (camera_from_world * position).z();
+      observations.push_back({position, frame.pixels[k].cast<double>(),
+                              agreeing_disparity(frame, k, camera_, z),
                               static_cast<double>(frame.sigmas[k])});
     }
     return observations;

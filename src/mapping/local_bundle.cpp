@@ -3,13 +3,10 @@
 #include "mapping/local_bundle.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 namespace dxslam {
 namespace {
-
-constexpr double kMaxDisparityError = 4.0;  // sigma
 
 class BundleBuilder {
  public:
@@ -63,25 +60,16 @@ class BundleBuilder {
   void add_observation(int pose, int point, const PointObservation& o) {
     const Frame& frame = *map_.keyframe(o.keyframe).frame;
     bundle_.problem.observations.push_back({pose, point, frame.pixels[o.keypoint].cast<double>(),
-                                            agreeing_disparity(pose, point, o),
+                                            agreeing_disparity_of(pose, point, o),
                                             static_cast<double>(frame.sigmas[o.keypoint])});
   }
 
-  // Disparity of the keypoint, or 0 where it is not that of the point: a depth reading beside an
-  // edge is often that of another surface, while the pixel is right.
-  double agreeing_disparity(int pose, int point, const PointObservation& o) const {
-    const Frame& frame = *map_.keyframe(o.keyframe).frame;
-    const double depth = static_cast<double>(frame.depths[o.keypoint]);
-    if (depth <= 0.0) return 0.0;
+  double agreeing_disparity_of(int pose, int point, const PointObservation& o) const {
     const BundleProblem& problem = bundle_.problem;
     const Eigen::Vector3d p =
         problem.poses[static_cast<std::size_t>(pose)].world_from_camera.inverse() *
         problem.points[static_cast<std::size_t>(point)];
-    const double disparity = camera_.bf() / depth;
-    const double error = disparity - camera_.bf() / std::max(1e-3, p.z());
-    return std::abs(error) <= kMaxDisparityError * static_cast<double>(frame.sigmas[o.keypoint])
-               ? disparity
-               : 0.0;
+    return agreeing_disparity(*map_.keyframe(o.keyframe).frame, o.keypoint, camera_, p.z());
   }
 
   const Map& map_;

@@ -3,7 +3,6 @@
 #include "relocalization/pose_refinement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <unordered_map>
 
@@ -14,21 +13,15 @@
 namespace dxslam {
 namespace {
 
-// The map point of `match` as an observation at `pose`. A depth reading beside an edge is often
-// that of another surface: it counts only where it agrees with the pose so far.
+// The map point of `match` as an observation at a pose.
 PoseObservation observe(const Camera& camera, const Map& map, const Frame& frame,
-                        const PointMatch& match, const SE3& camera_from_world,
-                        const PoseOptimizerOptions& options) {
+                        const PointMatch& match, const SE3& camera_from_world) {
   const std::size_t i = static_cast<std::size_t>(match.keypoint);
   PoseObservation o;
   o.point_in_world = map.point(match.id).position;
   o.pixel = frame.pixels[i].cast<double>();
   o.sigma = static_cast<double>(frame.sigmas[i]);
-  if (!frame.has_depth(i)) return o;
-  const double z = (camera_from_world * o.point_in_world).z();
-  const double disparity = camera.bf() / static_cast<double>(frame.depths[i]);
-  const double gate = 3.0 * std::sqrt(options.chi2_depth) * o.sigma;
-  if (z > Camera::kNearest && std::abs(camera.bf() / z - disparity) < gate) o.disparity = disparity;
+  o.disparity = agreeing_disparity(frame, i, camera, (camera_from_world * o.point_in_world).z());
   return o;
 }
 
@@ -65,7 +58,7 @@ bool PoseRefiner::optimise(RefinedPose& pose) const {
   std::vector<PoseObservation> observations;
   observations.reserve(pose.inliers.size());
   for (const PointMatch& match : pose.inliers) {
-    observations.push_back(observe(camera_, map_, frame_, match, camera_from_world, options_.pose));
+    observations.push_back(observe(camera_, map_, frame_, match, camera_from_world));
   }
   const PoseReport report =
       optimize_pose(camera_, pose.world_from_camera, observations, options_.pose);

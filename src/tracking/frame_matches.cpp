@@ -37,15 +37,15 @@ std::vector<PoseObservation> pose_observations(const Frame& frame,
   return observations;
 }
 
-int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi2_pixel,
+int drop_wrong_depths(const Camera& camera, const PoseReport& report,
                       std::vector<PoseObservation>& observations) {
   const SE3 camera_from_world = report.world_from_camera.inverse();
   int dropped = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     PoseObservation& o = observations[i];
     if (report.inlier[i] != 0 || o.disparity <= 0.0) continue;
-    const Eigen::Vector3d p = camera_from_world * o.point_in_world;
-    if (camera.squared_error(p, o.pixel) > chi2_pixel * o.sigma * o.sigma) continue;
+    const double z = (camera_from_world * o.point_in_world).z();
+    if (disparity_agrees(camera, o.disparity, z, o.sigma)) continue;
     o.disparity = 0.0;
     ++dropped;
   }

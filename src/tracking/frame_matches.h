@@ -35,9 +35,9 @@ std::vector<PoseObservation> pose_observations(const Frame& frame,
                                                const std::vector<KnownPoint>& known,
                                                const Camera& camera);
 
-/// Takes the disparity out of the outliers whose pixel alone passes `chi2_pixel` at the pose of
-/// `report`. Returns how many.
-int drop_wrong_depths(const Camera& camera, const PoseReport& report, double chi2_pixel,
+/// Takes the disparity out of the outliers where it disagrees with the pose of `report`. Returns
+/// how many.
+int drop_wrong_depths(const Camera& camera, const PoseReport& report,
                       std::vector<PoseObservation>& observations);
 
 /// How many of the points `world_from_camera` puts within `radius` pixels of their keypoints.
@@ -47,12 +47,6 @@ int count_near(const Camera& camera, const Frame& frame, const SE3& world_from_c
 /// How many of the points `world_from_camera` puts into view.
 int count_in_view(const Camera& camera, const SE3& world_from_camera,
                   const std::vector<KnownPoint>& known);
-
-/// Disparity of a keypoint for the optimisers; 0 where it has no depth.
-inline double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera) {
-  return frame.has_depth(keypoint) ? camera.bf() / static_cast<double>(frame.depths[keypoint])
-                                   : 0.0;
-}
 
 /// Drops the entries whose flag is 0.
 template <class T>

@@ -318,8 +318,7 @@ Tracker::OptionalEstimate Tracker::optimise(const Frame& frame, const SE3& start
   PoseReport pose = optimize_pose(camera_, start, observations, options_.pose);
   // A depth reading beside an edge is often that of another surface: where only the depth
   // disagrees, the pixel still counts.
-  if (pose.success &&
-      drop_wrong_depths(camera_, pose, options_.pose.chi2_pixel, observations) > 0) {
+  if (pose.success && drop_wrong_depths(camera_, pose, observations) > 0) {
     pose = optimize_pose(camera_, pose.world_from_camera, observations, options_.pose);
   }
   if (!pose.success || pose.inliers < options_.min_inliers) return std::nullopt;
