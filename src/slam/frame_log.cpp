@@ -79,12 +79,18 @@ struct FrameLog::Record {
   std::uint32_t component;
   KeyframeId reference;
   std::int32_t keypoints;
+  std::int32_t keypoints_with_depth;
   std::int32_t inliers;
   TrackingState state;
   bool is_keyframe;
   bool recovered;
 
   static Record of(const TrackedFrame& f) {
+    // Does not compile when a field of the frame is forgotten here.
+    [[maybe_unused]] const auto& [index_, stamp_, state_, world_from_camera_, component_,
+                                  reference_, reference_from_camera_, keypoints_,
+                                  keypoints_with_depth_, inliers_, is_keyframe_, recovered_,
+                                  rms_pixels_] = f;
     Record r;
     std::memset(&r, 0, sizeof(r));  // the gaps too: they are written
     r.index = f.index;
@@ -95,6 +101,7 @@ struct FrameLog::Record {
     r.component = f.component;
     r.reference = f.reference;
     r.keypoints = f.keypoints;
+    r.keypoints_with_depth = f.keypoints_with_depth;
     r.inliers = f.inliers;
     r.state = f.state;
     r.is_keyframe = f.is_keyframe;
@@ -111,6 +118,7 @@ struct FrameLog::Record {
     f.reference = reference;
     f.reference_from_camera = pose_of(reference_from_camera);
     f.keypoints = keypoints;
+    f.keypoints_with_depth = keypoints_with_depth;
     f.inliers = inliers;
     f.is_keyframe = is_keyframe;
     f.recovered = recovered;

@@ -25,6 +25,7 @@ TrackedFrame frame(int i) {
   f.reference = static_cast<KeyframeId>(i / 3);
   f.reference_from_camera = SE3::exp(-motion);
   f.keypoints = 1000 + i;
+  f.keypoints_with_depth = 500 + i;
   f.inliers = i;
   f.is_keyframe = i % 3 == 0;
   f.recovered = i % 5 == 0;
@@ -41,6 +42,7 @@ void expect_equal(const TrackedFrame& a, const TrackedFrame& b) {
   EXPECT_EQ(a.reference, b.reference);
   EXPECT_EQ(a.reference_from_camera.matrix(), b.reference_from_camera.matrix());
   EXPECT_EQ(a.keypoints, b.keypoints);
+  EXPECT_EQ(a.keypoints_with_depth, b.keypoints_with_depth);
   EXPECT_EQ(a.inliers, b.inliers);
   EXPECT_EQ(a.is_keyframe, b.is_keyframe);
   EXPECT_EQ(a.recovered, b.recovered);
