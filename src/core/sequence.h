@@ -27,6 +27,11 @@ struct RecordingFacts {
   bool has_depth = false;          ///< some frame has a depth image
   double median_depth = 0.0;       ///< metres, of the readings in the first images; 0: none there
   double depth_share = 0.0;        ///< of the pixels of the first images, those with a reading
+  /// Why the true trajectory that the recording brings could not be used; empty where it could, or
+  /// where there is none.
+  std::string truth_problem;
+  /// What was guessed, chosen or left out, one sentence each: for the user to judge.
+  std::vector<std::string> notes;
 };
 
 /// A recording: images in time order, with calibration and, where known, the true trajectory.

@@ -23,10 +23,7 @@ Camera read_intrinsics(const std::string& path, cv::Size size) {
   }
   for (int i = 0; i < 3; ++i) {
     const TextRow& row = rows[static_cast<std::size_t>(i)];
-    if (row.fields.size() != 3) {
-      throw InputError(fmt::format("{}: {} columns, expected a 3x3 camera matrix",
-                                   at_line(path, row.line), row.fields.size()));
-    }
+    if (row.fields.size() != 3) refuse_columns(path, row, "a 3x3 camera matrix");
     for (int j = 0; j < 3; ++j) {
       k(i, j) = finite_field(path, row, static_cast<std::size_t>(j), "camera matrix element");
     }
@@ -49,15 +46,12 @@ Camera read_intrinsics(const std::string& path, cv::Size size) {
 
 std::vector<SE3> read_poses(const std::string& path, std::size_t images) {
   std::vector<SE3> poses;
-  for (const TextRow& row : read_table(path, "one 4x4 pose a line")) {
-    if (row.fields.size() != 16) {
-      throw InputError(fmt::format("{}: {} columns, expected 16 (a 4x4 pose row by row)",
-                                   at_line(path, row.line), row.fields.size()));
-    }
+  for_each_row(path, "one 4x4 pose per line", [&](const TextRow& row) {
+    if (row.fields.size() != 16) refuse_columns(path, row, "16 (a 4x4 pose row by row)");
     double values[16];
     for (std::size_t i = 0; i < 16; ++i) values[i] = finite_field(path, row, i, "pose element");
     poses.push_back(pose_from_row_major(values, at_line(path, row.line)));
-  }
+  });
   if (poses.size() != images) {
     throw InputError(fmt::format("{}: {} poses, expected one for each of the {} images", path,
                                  poses.size(), images));
@@ -80,7 +74,7 @@ SequenceListing list_folder(const std::string& folder, const SequenceOptions& op
   namespace fs = std::filesystem;
   SequenceListing listing;
   listing.name = folder_name(folder);
-  const auto images = list_images(in_folder(folder, "images"));
+  const auto images = list_images(in_folder(folder, "images"), listing);
   if (!use_explicit_calibration(folder, options, listing)) {
     listing.calibration_source = in_folder(folder, "K.txt");
     const bool made_up = !options.needs_calibration && !fs::exists(listing.calibration_source);
@@ -95,10 +89,13 @@ SequenceListing list_folder(const std::string& folder, const SequenceOptions& op
   }
   const std::string poses = in_folder(folder, "poses.txt");
   if (fs::exists(poses)) {
-    for (const SE3& pose : read_poses(poses, images.size())) {
-      const std::size_t i = listing.ground_truth.size();
-      listing.ground_truth.push_back({listing.frames[i].stamp, pose});
-    }
+    take_truth(listing, [&] {
+      Trajectory truth;
+      for (const SE3& pose : read_poses(poses, images.size())) {
+        truth.push_back({listing.frames[truth.size()].stamp, pose});
+      }
+      return truth;
+    });
   }
   return listing;
 }

@@ -96,13 +96,34 @@ TEST(FolderReader, RefusesBrokenIntrinsics) {
   expect_input_error([&] { open_sequence(folder.path()); }, {"K.txt", "no such file"});
 }
 
-TEST(FolderReader, RefusesPosesThatDoNotFitTheImages) {
+TEST(FolderReader, GoesOnWithoutPosesThatDoNotFitTheImages) {
   const TestFolder folder;
   write_sequence(folder);
   folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
-  expect_input_error([&] { open_sequence(folder.path()); }, {"poses.txt", "1 poses", "3 images"});
+  const auto problem = [&] { return open_sequence(folder.path())->facts().truth_problem; };
+  EXPECT_THAT(problem(), testing::HasSubstr("1 poses, expected one for each of the 3 images"));
   folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
-  expect_input_error([&] { open_sequence(folder.path()); }, {"poses.txt:1", "12 columns"});
+  EXPECT_THAT(problem(), testing::HasSubstr("poses.txt:1: 12 columns"));
+  EXPECT_TRUE(open_sequence(folder.path())->ground_truth().empty());
+}
+
+TEST(FolderReader, CountsNumbersInNamesAndTellsOfOtherFiles) {
+  const TestFolder folder;
+  write_sequence(folder);
+  for (const int id : {2, 9, 10}) {
+    std::filesystem::rename(folder / fmt::format("images/{}.jpg", id),
+                            folder / fmt::format("images/frame{}.jpg", id));
+    std::filesystem::rename(folder / fmt::format("depth/{}.png", id),
+                            folder / fmt::format("depth/frame{}.png", id));
+  }
+  folder.write("images/._frame2.jpg", "of another system");
+  const auto sequence = open_sequence(folder.path());
+  ASSERT_EQ(sequence->size(), 3U);
+  EXPECT_FLOAT_EQ(sequence->read(2)->depth.at<float>(0, 0), 1.0F);
+  EXPECT_TRUE(sequence->facts().notes.empty());
+  folder.write("images/frame3.webp", "x");
+  EXPECT_THAT(open_sequence(folder.path())->facts().notes,
+              testing::ElementsAre(testing::HasSubstr("frame3.webp")));
 }
 
 TEST(FolderReader, RefusesAFolderWithoutImages) {

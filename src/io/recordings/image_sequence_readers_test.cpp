@@ -97,14 +97,32 @@ TEST_F(KittiReader, MovesThePosesToTheRightCamera) {
   EXPECT_LT((last - Eigen::Vector3d(0, 0, 1.3)).norm(), 1e-9);
 }
 
+TEST_F(KittiReader, SkipsAnImageOfTheSameTime) {
+  folder_.write("sequences/07/times.txt", "0.0\n0.1\n0.1\n");
+  const auto left = open_sequence(sequence());
+  ASSERT_EQ(left->size(), 2U);
+  EXPECT_EQ(left->ground_truth().size(), 2U);
+  ASSERT_EQ(left->skipped().size(), 1U);
+  EXPECT_THAT(left->skipped()[0].reason, testing::HasSubstr("000002.png: has the time"));
+}
+
+TEST_F(KittiReader, TellsWhichImagesItTakes) {
+  folder_.write("sequences/07/image_2/000000.png", numbered(1));
+  EXPECT_THAT(open_sequence(sequence())->facts().notes,
+              testing::ElementsAre(testing::HasSubstr("image_0, are used")));
+}
+
 TEST_F(KittiReader, SaysWhatDoesNotFit) {
   folder_.write("sequences/07/times.txt", "0.0\n0.1\n");
   expect_input_error([&] { open_sequence(sequence()); }, {"times.txt", "2 times", "3 images"});
-  folder_.write("sequences/07/times.txt", "0.0\n0.1\n0.1\n");
+  folder_.write("sequences/07/times.txt", "0.0\n0.2\n0.1\n");
   expect_input_error([&] { open_sequence(sequence()); }, {"times.txt:3", "rising"});
+  folder_.write("sequences/07/times.txt", "0.0\n0.1 5\n0.1\n");
+  expect_input_error([&] { open_sequence(sequence()); }, {"times.txt:2", "2 columns"});
   folder_.write("sequences/07/times.txt", "0.0\n0.1\n0.2\n");
   folder_.write("poses/07.txt", "1 0 0 0 0 1 0 0 0 0 1\n");
-  expect_input_error([&] { open_sequence(sequence()); }, {"07.txt:1", "11 columns"});
+  EXPECT_THAT(open_sequence(sequence())->facts().truth_problem,
+              testing::HasSubstr("07.txt:1: 11 columns"));
   folder_.write("sequences/07/calib.txt", "P1: 20 0 16 0 0 20 12 0 0 0 1 0\n");
   expect_input_error([&] { open_sequence(sequence()); }, {"calib.txt", "P0:"});
 }

@@ -40,29 +40,31 @@ Projection projection_of(const std::string& path, int camera) {
 
 std::vector<double> read_times(const std::string& path) {
   std::vector<double> times;
-  for (const TextRow& row : read_table(path, "one time per line")) {
+  for_each_row(path, "one time per line", [&](const TextRow& row) {
+    if (row.fields.size() != 1) refuse_columns(path, row, "1 (time)");
     const double time = finite_field(path, row, 0, "time");
-    if (!times.empty() && time <= times.back()) {
+    if (!times.empty() && time < times.back()) {
       throw InputError(fmt::format("{}: time {:.6f} after {:.6f}, expected rising times",
                                    at_line(path, row.line), time, times.back()));
     }
+    if (times.size() == limits::kFrames) {
+      throw InputError(fmt::format("{}: more than {} times, expected less", at_line(path, row.line),
+                                   limits::kFrames));
+    }
     times.push_back(time);
-  }
+  });
   return times;
 }
 
 std::vector<SE3> read_kitti_poses(const std::string& path) {
   std::vector<SE3> poses;
-  for (const TextRow& row : read_table(path, "one 3x4 pose a line")) {
-    if (row.fields.size() != 12) {
-      throw InputError(fmt::format("{}: {} columns, expected 12 (a 3x4 pose row by row)",
-                                   at_line(path, row.line), row.fields.size()));
-    }
+  for_each_row(path, "one 3x4 pose per line", [&](const TextRow& row) {
+    if (row.fields.size() != 12) refuse_columns(path, row, "12 (a 3x4 pose row by row)");
     double values[16] = {};
     values[15] = 1.0;
     for (std::size_t i = 0; i < 12; ++i) values[i] = finite_field(path, row, i, "pose element");
     poses.push_back(pose_from_row_major(values, at_line(path, row.line)));
-  }
+  });
   return poses;
 }
 
@@ -102,13 +104,36 @@ void set_camera(const std::string& folder, const Projection& p, cv::Size size,
   camera.fps = 10.0;
 }
 
+Trajectory true_trajectory(const std::string& file, const std::vector<double>& times,
+                           const Projection& p) {
+  const std::vector<SE3> poses = read_kitti_poses(file);
+  if (poses.size() != times.size()) {
+    throw InputError(fmt::format("{}: {} poses, expected one for each of the {} images", file,
+                                 poses.size(), times.size()));
+  }
+  // The fourth column is the camera's matrix times the offset of camera 0 in its frame.
+  const SE3 camera_from_zero(
+      Eigen::Quaterniond::Identity(),
+      Eigen::Vector3d((p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]));
+  Trajectory truth;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0 && times[i] == times[i - 1]) continue;
+    truth.push_back({times[i], poses[i] * camera_from_zero.inverse()});
+  }
+  return truth;
+}
+
 }  // namespace
 
 SequenceListing list_kitti(const std::string& folder, const SequenceOptions& options) {
   SequenceListing listing;
   listing.name = folder_name(folder);
   const int camera = choose_camera(folder, options.eye);
-  const auto images = list_images(in_folder(folder, fmt::format("image_{}", camera)));
+  if (camera < 2 && fs::is_directory(in_folder(folder, fmt::format("image_{}", camera + 2)))) {
+    listing.notes.push_back(
+        fmt::format("of the grey and the colour images the grey ones, image_{}, are used", camera));
+  }
+  const auto images = list_images(in_folder(folder, fmt::format("image_{}", camera)), listing);
   const Projection p = projection_of(in_folder(folder, "calib.txt"), camera);
   if (!use_explicit_calibration(folder, options, listing)) {
     set_camera(folder, p, image_size(images), listing);
@@ -119,21 +144,17 @@ SequenceListing list_kitti(const std::string& folder, const SequenceOptions& opt
                                  in_folder(folder, "times.txt"), times.size(), images.size()));
   }
   for (std::size_t i = 0; i < images.size(); ++i) {
-    listing.frames.push_back({times[i], images[i].string(), {}});
+    if (i > 0 && times[i] == times[i - 1]) {
+      listing.skipped.push_back(
+          {listing.frames.size(), fmt::format("{}: has the time of the image before, {:.6f} s",
+                                              images[i].string(), times[i])});
+    } else {
+      listing.frames.push_back({times[i], images[i].string(), {}});
+    }
   }
   const std::string pose_file = find_poses(folder);
-  if (pose_file.empty()) return listing;
-  const std::vector<SE3> poses = read_kitti_poses(pose_file);
-  if (poses.size() != images.size()) {
-    throw InputError(fmt::format("{}: {} poses, expected one for each of the {} images", pose_file,
-                                 poses.size(), images.size()));
-  }
-  // The fourth column is the camera's matrix times the offset of camera 0 in its frame.
-  const SE3 camera_from_zero(
-      Eigen::Quaterniond::Identity(),
-      Eigen::Vector3d((p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]));
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    listing.ground_truth.push_back({times[i], poses[i] * camera_from_zero.inverse()});
+  if (!pose_file.empty()) {
+    take_truth(listing, [&] { return true_trajectory(pose_file, times, p); });
   }
   return listing;
 }

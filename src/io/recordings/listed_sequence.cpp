@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/primitives/image_file.h"
+#include "io/recordings/stamp_hint.h"
 
 namespace dxslam {
 namespace {
@@ -23,6 +24,8 @@ class ListedSequence : public RgbdSequence {
   explicit ListedSequence(SequenceListing listing)
       : listing_(std::move(listing)), skipped_(listing_.skipped) {
     facts_.calibration_source = listing_.calibration_source;
+    facts_.truth_problem = listing_.truth_problem;
+    facts_.notes = listing_.notes;
     facts_.has_depth = std::any_of(listing_.frames.begin(), listing_.frames.end(),
                                    [](const ListedFrame& frame) { return !frame.depth.empty(); });
   }
@@ -116,11 +119,26 @@ class ListedSequence : public RgbdSequence {
   std::vector<SkippedFrame> skipped_;
 };
 
+void note_on_stamps(SequenceListing& listing) {
+  std::vector<double> stamps;
+  for (const ListedFrame& frame : listing.frames) stamps.push_back(frame.stamp);
+  const std::string hint = stamp_hint(stamps);
+  if (!hint.empty()) listing.notes.push_back("the images' " + hint);
+  const Trajectory& truth = listing.ground_truth;
+  if (truth.empty()) return;
+  if (truth.front().stamp <= stamps.back() && truth.back().stamp >= stamps.front()) return;
+  listing.notes.push_back(fmt::format(
+      "the true trajectory ({:.3f} to {:.3f} s) and the images ({:.3f} to {:.3f} s) have no time "
+      "in common",
+      truth.front().stamp, truth.back().stamp, stamps.front(), stamps.back()));
+}
+
 }  // namespace
 
 std::unique_ptr<RgbdSequence> make_sequence(SequenceListing listing) {
   require(!listing.frames.empty(), "a sequence must have frames");
   listing.camera.prepare(listing.calibration_source);
+  note_on_stamps(listing);
   auto sequence = std::make_unique<ListedSequence>(std::move(listing));
   sequence->probe();
   return sequence;

@@ -27,6 +27,8 @@ struct SequenceListing {
   std::vector<ListedFrame> frames;
   std::vector<SkippedFrame> skipped;  ///< left out already
   Trajectory ground_truth;
+  std::string truth_problem;       ///< see RecordingFacts
+  std::vector<std::string> notes;  ///< see RecordingFacts
   /// Raw CV_16UC1 depth to raw CV_16UC1 depth registered to colour; none = is registered.
   std::function<cv::Mat(const cv::Mat&)> register_depth;
 };

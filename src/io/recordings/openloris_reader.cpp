@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -119,8 +120,30 @@ void calibrate(const std::string& folder, bool market, const SequenceOptions& op
                     folder));
   }
   listing.camera = load_camera("openloris_d435i");
-  listing.calibration_source = has_sensors ? sensors : "preset openloris_d435i";
-  if (has_sensors) read_sensors(sensors, listing.camera);
+  listing.calibration_source = has_sensors ? sensors : "preset openloris_d435i (by the format)";
+  if (has_sensors) return read_sensors(sensors, listing.camera);
+  listing.notes.push_back(
+      "no sensors.yaml: the camera is taken to be that of the robot of OpenLORIS-Scene "
+      "(preset openloris_d435i)");
+}
+
+// Where the camera is on the robot: of the recording, or as published with the dataset.
+SE3 find_base_from_color(const std::string& folder, bool market, SequenceListing& listing) {
+  const std::string transforms = in_folder(folder, "trans_matrix.yaml");
+  if (std::filesystem::exists(transforms)) {
+    if (const auto found = read_base_from_color(transforms)) return *found;
+  }
+  listing.notes.push_back(fmt::format(
+      "no trans_matrix.yaml with {}: the true poses are moved to the camera as published for {}",
+      kColorFrame, market ? "market" : "all scenes but market"));
+  return openloris_base_from_sensor(market, "d400_color");
+}
+
+// "market1-1" is one, "supermarket" is not.
+bool is_market(const std::string& name) {
+  const std::size_t at = name.find("market");
+  return at != std::string::npos &&
+         (at == 0 || std::isalpha(static_cast<unsigned char>(name[at - 1])) == 0);
 }
 
 }  // namespace
@@ -129,19 +152,19 @@ SequenceListing list_openloris(const std::string& folder, const SequenceOptions&
   SequenceListing listing;
   listing.name = folder_name(folder);
   associate_lists(folder, "color.txt", "aligned_depth.txt", options, listing);
-  const bool market = listing.name.find("market") != std::string::npos;
+  const bool market = is_market(listing.name);
   calibrate(folder, market, options, listing);
 
   const std::string truth = in_folder(folder, "groundtruth.txt");
   if (!std::filesystem::exists(truth)) return listing;
-  const std::string transforms = in_folder(folder, "trans_matrix.yaml");
-  std::optional<SE3> base_from_color;
-  if (std::filesystem::exists(transforms)) base_from_color = read_base_from_color(transforms);
-  // As published with the dataset, where the folder has no trans_matrix.yaml.
-  if (!base_from_color) base_from_color = openloris_base_from_sensor(market, "d400_color");
-  for (const StampedPose& pose : read_trajectory(truth)) {
-    listing.ground_truth.push_back({pose.stamp, pose.world_from_camera * *base_from_color});
-  }
+  take_truth(listing, [&] {
+    const SE3 base_from_color = find_base_from_color(folder, market, listing);
+    Trajectory moved;
+    for (const StampedPose& pose : read_trajectory(truth)) {
+      moved.push_back({pose.stamp, pose.world_from_camera * base_from_color});
+    }
+    return moved;
+  });
   return listing;
 }
 

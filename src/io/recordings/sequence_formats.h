@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -22,8 +23,6 @@ SequenceListing list_image_folder(const std::string& folder, const SequenceOptio
 
 /// Whether `folder` holds frames named as those of 7-Scenes.
 bool has_seven_scenes_frames(const std::string& folder);
-/// Whether `folder` holds image files.
-bool has_images(const std::string& folder);
 
 // What the readers share.
 
@@ -37,16 +36,20 @@ std::string folder_name(const std::string& folder);
 bool use_explicit_calibration(const std::string& folder, const SequenceOptions& options,
                               SequenceListing& listing);
 /// Frames from two lists of "stamp file", each colour image with the depth image nearest in time,
-/// or from the association file of the options. Fills frames and skipped.
+/// or from the association file of the options. Names may have blanks in them. A line that repeats
+/// a stamp is skipped. Fills frames, skipped and notes.
 void associate_lists(const std::string& folder, const std::string& color_list,
                      const std::string& depth_list, const SequenceOptions& options,
                      SequenceListing& listing);
+/// Sets the true trajectory to what `read` returns. Where that throws InputError the recording has
+/// none, and the reason becomes a note: the truth is no part of what a recording needs.
+void take_truth(SequenceListing& listing, const std::function<Trajectory()>& read);
 /// world_from_camera of 16 numbers, row by row. `where` is "FILE:LINE" for messages. Throws unless
 /// the rotation is orthonormal within 1 % and the last row is 0 0 0 1.
 SE3 pose_from_row_major(const double (&values)[16], const std::string& where);
-/// Image files of a folder in the order of their names, numbers by value. Throws InputError
-/// if there is none.
-std::vector<std::filesystem::path> list_images(const std::string& folder);
+/// The images of a folder (list_image_files); its notes go to those of the listing. Throws
+/// InputError if there is none.
+std::vector<std::filesystem::path> list_images(const std::string& folder, SequenceListing& listing);
 /// Size of the first readable one; throws InputError if none of the first ten is.
 cv::Size image_size(const std::vector<std::filesystem::path>& images);
 /// The camera of SequenceOptions::needs_calibration = false.

@@ -9,6 +9,8 @@
 
 #include "core/error.h"
 #include "io/formats/trajectory_file.h"
+#include "io/primitives/image_listing.h"
+#include "io/primitives/name_order.h"
 #include "io/primitives/text_file.h"
 #include "io/recordings/sequence_formats.h"
 
@@ -21,6 +23,8 @@ struct Format {
   const char* name;
   bool (*recognises)(const std::string& folder);  // none: only where no other does
   SequenceListing (*list)(const std::string& folder, const SequenceOptions& options);
+  bool has_lists = false;    // SequenceOptions::association has a meaning
+  bool has_cameras = false;  // SequenceOptions::eye has a meaning
 };
 
 bool has(const std::string& folder, const char* name) {
@@ -30,13 +34,13 @@ bool has(const std::string& folder, const char* name) {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> table = {
-      {"tum", [](const std::string& f) { return has(f, "rgb.txt"); }, list_tum},
+      {"tum", [](const std::string& f) { return has(f, "rgb.txt"); }, list_tum, true},
       {"7scenes", has_seven_scenes_frames, list_seven_scenes},
-      {"openloris", [](const std::string& f) { return has(f, "color.txt"); }, list_openloris},
+      {"openloris", [](const std::string& f) { return has(f, "color.txt"); }, list_openloris, true},
       {"kitti", [](const std::string& f) { return has(f, "times.txt") && has(f, "calib.txt"); },
-       list_kitti},
+       list_kitti, false, true},
       {"folder", [](const std::string& f) { return has(f, "images"); }, list_folder},
-      {"images", nullptr, list_image_folder},
+      {"images", nullptr, list_image_folder, false, true},
   };
   return table;
 }
@@ -49,25 +53,82 @@ const Format& format_named(const std::string& name) {
                                fmt::join(sequence_formats(), ", ")));
 }
 
-const Format& recognise(const std::string& folder) {
+/// Where a recording lies, and in which format.
+struct Place {
+  std::string folder;
+  const Format* format = nullptr;
+};
+
+// The format that `folder` itself looks like, `wanted` or any; none where it looks like no
+// recording.
+const Format* recognise(const std::string& folder, const Format* wanted) {
   const Format* found = nullptr;
   for (const Format& format : formats()) {
     if (format.recognises == nullptr || !format.recognises(folder)) continue;
+    if (wanted != nullptr && wanted != &format) continue;
     if (found != nullptr) {
       throw InputError(fmt::format("{}: looks like both {} and {}, expected --format to say which",
                                    folder, found->name, format.name));
     }
     found = &format;
   }
-  if (found != nullptr) return *found;
-  if (has_images(folder) || has(folder, "Images")) return format_named("images");
+  return found;
+}
+
+// Recordings in the subfolders. Folders of mere images are none: depth images lie in such, too.
+std::vector<Place> recordings_below(const std::string& folder, const Format* wanted) {
+  std::vector<Place> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    std::error_code error;
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory(error) || error || name.front() == '.') continue;
+    const Format* format = recognise(entry.path().string(), wanted);
+    if (format != nullptr) found.push_back({entry.path().string(), format});
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Place& a, const Place& b) { return natural_less(a.folder, b.folder); });
+  return found;
+}
+
+[[noreturn]] void refuse_folder(const std::string& folder, const std::vector<Place>& below) {
+  if (below.size() > 1) {
+    throw InputError(fmt::format(
+        "{}: no recording itself, but {} of its subfolders are ({} and {}{}), expected one of them",
+        folder, below.size(), folder_name(below[0].folder), folder_name(below[1].folder),
+        below.size() > 2 ? ", ..." : ""));
+  }
   throw InputError(
       fmt::format("{}: not a recording known here, expected rgb.txt and depth.txt (tum), "
-                  "frame-NNNNNN.color.png "
-                  "(7scenes), color.txt and aligned_depth.txt (openloris), images/ and K.txt "
-                  "(folder), times.txt "
-                  "and calib.txt (kitti) or image files (images){}",
-                  folder, has(folder, "seq-01") ? "; its subfolder seq-01 may be one" : ""));
+                  "frame-NNNNNN.color.png (7scenes), color.txt and aligned_depth.txt (openloris), "
+                  "images/ and K.txt (folder), times.txt and calib.txt (kitti) or image files "
+                  "(images)",
+                  folder));
+}
+
+// The recording in `path`, or the only one in its subfolders.
+Place find_recording(const std::string& path, const std::string& format) {
+  const Format* wanted = format == "auto" ? nullptr : &format_named(format);
+  if (const Format* found = recognise(path, wanted)) return {path, found};
+  const Format& images = format_named("images");
+  if (wanted == &images) return {path, wanted};
+  if (wanted == nullptr && (has_image_files(path) || has(path, "Images"))) return {path, &images};
+  const std::vector<Place> below = recordings_below(path, wanted);
+  if (below.size() == 1) return below.front();
+  if (wanted == nullptr || below.size() > 1) refuse_folder(path, below);
+  return {path, wanted};  // whose reader says what is missing
+}
+
+void refuse_unused_options(const Format& format, const SequenceOptions& options) {
+  const auto refuse = [&](const char* option, const char* meant) {
+    throw InputError(fmt::format("option {} is for {}, expected none for a recording of format {}",
+                                 option, meant, format.name));
+  };
+  if (!options.association.empty() && !format.has_lists) {
+    refuse("--association", "lists of images (tum, openloris)");
+  }
+  if (options.eye != "all" && !format.has_cameras) {
+    refuse("--eye", "recordings of two cameras (kitti, images)");
+  }
 }
 
 SequenceListing list_sequence(const std::string& path, const SequenceOptions& options) {
@@ -83,8 +144,15 @@ SequenceListing list_sequence(const std::string& path, const SequenceOptions& op
     throw InputError(
         fmt::format("option eye is {}, expected all, left or right", in_quotes(options.eye)));
   }
-  const Format& format = options.format == "auto" ? recognise(path) : format_named(options.format);
-  return format.list(path, options);
+  const Place place = find_recording(path, options.format);
+  refuse_unused_options(*place.format, options);
+  SequenceListing listing = place.format->list(place.folder, options);
+  if (place.folder != path) {
+    listing.notes.insert(
+        listing.notes.begin(),
+        fmt::format("{} is no recording itself; the one in {} is used", path, place.folder));
+  }
+  return listing;
 }
 
 }  // namespace
@@ -117,12 +185,13 @@ void require_depth(const RgbdSequence& sequence) {
 Trajectory load_ground_truth(const std::string& file_or_folder) {
   std::error_code error;
   if (!fs::is_directory(file_or_folder, error)) return read_trajectory(file_or_folder);
-  Trajectory truth = open_sequence(file_or_folder)->ground_truth();
-  if (truth.empty()) {
-    throw InputError(
-        fmt::format("{}: the recording has no true trajectory, expected one", file_or_folder));
-  }
-  return truth;
+  const std::unique_ptr<RgbdSequence> sequence = open_sequence(file_or_folder);
+  if (!sequence->ground_truth().empty()) return sequence->ground_truth();
+  const std::string& problem = sequence->facts().truth_problem;
+  throw InputError(
+      problem.empty()
+          ? fmt::format("{}: the recording has no true trajectory, expected one", file_or_folder)
+          : problem);
 }
 
 }  // namespace dxslam

@@ -13,10 +13,41 @@ TEST(SequenceReader, SaysWhatItLookedFor) {
   const TestFolder folder("nothing");
   expect_input_error([&] { open_sequence(folder.path()); },
                      {"nothing", "rgb.txt", "frame-NNNNNN", "aligned_depth.txt", "images/"});
-  std::filesystem::create_directories(folder / "seq-01");
-  expect_input_error([&] { open_sequence(folder.path()); }, {"subfolder seq-01"});
   expect_input_error([&] { open_sequence(folder / "none"); }, {"none", "no such folder"});
   expect_input_error([&] { open_sequence(folder.write("file", "x")); }, {"not a folder"});
+}
+
+TEST(SequenceReader, TakesTheOnlyRecordingInASubfolder) {
+  const TestFolder folder("scene");
+  folder.write("readme.txt", "x");
+  folder.write("thumbnails/1.png", test_color());
+  folder.write("seq-01/frame-000001.color.png", test_color(640, 480));
+  folder.write("seq-01/frame-000001.depth.png", test_depth(1000, 640, 480));
+  const auto sequence = open_sequence(folder.path());
+  EXPECT_EQ(sequence->name(), "seq-01");
+  EXPECT_THAT(sequence->facts().notes, testing::ElementsAre(testing::HasSubstr("seq-01 is used")));
+  SequenceOptions options;
+  options.format = "7scenes";
+  EXPECT_EQ(open_sequence(folder.path(), options)->name(), "seq-01");
+  options.format = "tum";
+  expect_input_error([&] { open_sequence(folder.path(), options); }, {"rgb.txt", "no such file"});
+  folder.write("seq-02/frame-000001.color.png", test_color(640, 480));
+  folder.write("seq-10/frame-000001.color.png", test_color(640, 480));
+  expect_input_error([&] { open_sequence(folder.path()); },
+                     {"3 of its subfolders are (seq-01 and seq-02, ...)", "expected one of them"});
+}
+
+TEST(SequenceReader, RefusesOptionsThatAFormatDoesNotUse) {
+  const TestFolder folder;
+  folder.write("images/1.png", test_color());
+  folder.write("calibration.yaml", test_calibration());
+  SequenceOptions options;
+  options.association = "/nonexistent";
+  expect_input_error([&] { open_sequence(folder.path(), options); },
+                     {"--association", "tum, openloris", "format folder"});
+  options.association.clear();
+  options.eye = "left";
+  expect_input_error([&] { open_sequence(folder.path(), options); }, {"--eye", "format folder"});
 }
 
 TEST(SequenceReader, RefusesAmbiguousFoldersAndUnknownFormats) {

@@ -77,18 +77,35 @@ cv::Mat register_depth(const cv::Mat& raw, const std::vector<int>& rows,
   return registered;
 }
 
-std::map<int, std::string> find_frames(const std::string& folder) {
+std::map<int, std::string> find_frames(const std::string& folder, SequenceListing& listing) {
   std::map<int, std::string> colors;
+  std::size_t others = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const int number = frame_number(name);
+    if (number < 0 && name.find(".color.") != std::string::npos && name.front() != '.') ++others;
     if (number < 0) continue;
     if (!colors.emplace(number, name).second) {
       throw InputError(fmt::format("{}: both a PNG and a JPEG for frame {}, expected one of them",
                                    folder, number));
     }
   }
+  if (others > 0) {
+    listing.notes.push_back(fmt::format(
+        "{} colour images were left out, as they are not called frame-NNNNNN.color.png or .jpg",
+        others));
+  }
   return colors;
+}
+
+// A frame whose pose cannot be read is one without.
+void take_pose(double stamp, const std::string& path, SequenceListing& listing,
+               std::size_t& broken) {
+  try {
+    listing.ground_truth.push_back({stamp, read_pose(path)});
+  } catch (const InputError& e) {
+    if (broken++ == 0) listing.truth_problem = e.what();
+  }
 }
 
 }  // namespace
@@ -107,14 +124,19 @@ SequenceListing list_seven_scenes(const std::string& folder, const SequenceOptio
   listing.name = folder_name(folder);
   if (!use_explicit_calibration(folder, options, listing)) {
     listing.camera = load_camera("seven_scenes");
-    listing.calibration_source = "preset seven_scenes";
+    listing.calibration_source = "preset seven_scenes (by the format)";
   }
-  for (const auto& [number, color] : find_frames(folder)) {
+  std::size_t broken_poses = 0;
+  for (const auto& [number, color] : find_frames(folder, listing)) {
     const double stamp = number / kFramesASecond;
     const std::string stem = in_folder(folder, color.substr(0, kPrefix.size() + kNumberDigits));
     listing.frames.push_back({stamp, in_folder(folder, color), stem + ".depth.png"});
     const std::string pose = stem + ".pose.txt";
-    if (std::filesystem::exists(pose)) listing.ground_truth.push_back({stamp, read_pose(pose)});
+    if (std::filesystem::exists(pose)) take_pose(stamp, pose, listing, broken_poses);
+  }
+  if (broken_poses > 0) {
+    listing.notes.push_back(fmt::format("{} frames are without a true pose; the first: {}",
+                                        broken_poses, listing.truth_problem));
   }
   if (listing.frames.empty()) {
     throw InputError(

@@ -73,12 +73,18 @@ TEST(SevenScenesReader, RegistersByThePlaceOfTheDepthCameraWhereItIsKnown) {
   EXPECT_EQ(sequence->ground_truth()[0].world_from_camera.translation().z(), -2.0);
 }
 
-TEST(SevenScenesReader, RefusesBrokenPoses) {
+TEST(SevenScenesReader, GoesOnWithoutBrokenPoses) {
   const TestFolder folder;
   write_sequence(folder, "jpg");
   const auto expect = [&](const std::string& pose, const std::vector<std::string>& parts) {
     folder.write("frame-000003.pose.txt", pose);
-    expect_input_error([&] { open_sequence(folder.path()); }, parts);
+    const auto sequence = open_sequence(folder.path());
+    EXPECT_EQ(sequence->ground_truth().size(), 2U);
+    EXPECT_THAT(sequence->facts().notes,
+                testing::ElementsAre(testing::HasSubstr("1 frames are without a true pose")));
+    for (const std::string& part : parts) {
+      EXPECT_THAT(sequence->facts().truth_problem, testing::HasSubstr(part));
+    }
   };
   expect("1 0 0 0\n0 1 0 0\n0 0 1 0\n", {"frame-000003.pose.txt", "12 numbers", "4x4"});
   expect("1 0 0 0\n0 1 0 nan\n0 0 1 0\n0 0 0 1\n", {"frame-000003.pose.txt:2", "'nan'"});
@@ -87,6 +93,14 @@ TEST(SevenScenesReader, RefusesBrokenPoses) {
   expect("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 1 1\n", {"frame-000003.pose.txt", "last row"});
   std::filesystem::remove(folder / "frame-000003.pose.txt");
   EXPECT_EQ(open_sequence(folder.path())->ground_truth().size(), 2U);
+}
+
+TEST(SevenScenesReader, CountsImagesWithOtherNames) {
+  const TestFolder folder;
+  write_sequence(folder, "jpg");
+  folder.write("frame-0007.color.jpg", test_color(640, 480));
+  EXPECT_THAT(open_sequence(folder.path())->facts().notes,
+              testing::ElementsAre(testing::HasSubstr("1 colour images were left out")));
 }
 
 TEST(SevenScenesReader, RefusesTwoFilesForOneFrame) {

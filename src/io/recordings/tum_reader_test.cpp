@@ -114,6 +114,90 @@ TEST(TumReader, RefusesBrokenLists) {
   expect("5.0 rgb/0.png\n", {"within 0.02 s", "nearest 4.596 s"});
 }
 
+TEST(TumReader, TakesNamesWithBlanksAndCommas) {
+  const TestFolder folder;
+  write_sequence(folder);
+  for (const char* name : {"my rgb/a b,c.png", "my rgb/ d  e.png", "it's.png"}) {
+    folder.write(name, test_color());
+  }
+  folder.write("my depth/1.0 2.0.png", test_depth(2000));
+  folder.write("rgb.txt",
+               "0.0 my rgb/a b,c.png \r\n0.1,\"my rgb/ d  e.png\"\n0.2 it's.png\n"
+               "0.3 no such.png\n");
+  folder.write("depth.txt",
+               "0.0 my depth/1.0 2.0.png\n0.1 \"my depth/1.0 2.0.png\"\n"
+               "0.2 depth/0.png\n0.3 depth/0.png\n");
+  const auto sequence = open_sequence(folder.path());
+  ASSERT_EQ(sequence->size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(sequence->read(i).has_value()) << i;
+  EXPECT_FALSE(sequence->read(3).has_value());
+  EXPECT_THAT(sequence->skipped().back().reason, testing::HasSubstr("no such.png: no such file"));
+  folder.write("rgb.txt", "0.0 rgb/0.png 0.0 depth/0.png\n");
+  expect_input_error([&] { open_sequence(folder.path()); }, {"rgb.txt:1", "4 columns, expected 2"});
+}
+
+TEST(TumReader, TakesNamesWithBlanksInAssociations) {
+  const TestFolder folder;
+  write_sequence(folder);
+  folder.write("my rgb/1 2.png", test_color());
+  folder.write("my depth/3 4.png", test_depth(2000));
+  SequenceOptions options;
+  options.association = folder.write("pairs.txt",
+                                     "0.1 my rgb/1 2.png 0.2 my depth/3 4.png\n"
+                                     "0.2 \"my rgb/1 2.png\" 0.2 \"my depth/3 4.png\"\n"
+                                     "0.3 rgb/3.png 0.304 my depth/3 4.png\n"
+                                     "0.3 rgb/3.png 0.304 depth/3.png\n");
+  const auto sequence = open_sequence(folder.path(), options);
+  ASSERT_EQ(sequence->size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto image = sequence->read(i);
+    ASSERT_TRUE(image.has_value()) << i;
+    EXPECT_FLOAT_EQ(image->depth.at<float>(0, 0), 2.0F);
+  }
+  ASSERT_EQ(sequence->skipped().size(), 1U);
+  EXPECT_THAT(sequence->skipped()[0].reason, testing::HasSubstr("pairs.txt:4: stamp 0.300000"));
+  folder.write("pairs.txt", "0.1 my rgb/1 2.png 0.2 my depth/5.png\n");
+  expect_input_error([&] { open_sequence(folder.path(), options); },
+                     {"pairs.txt:1", "7 columns, expected 4", "quotes"});
+}
+
+TEST(TumReader, SkipsAndCountsRepeatedLines) {
+  const TestFolder folder;
+  write_sequence(folder);
+  folder.write("rgb.txt", folder.read("rgb.txt") + "0.200 rgb/2.png\n0.400 rgb/4.png\n");
+  folder.write("depth.txt", folder.read("depth.txt") + "0.404 depth/4.png\n");
+  const auto sequence = open_sequence(folder.path());
+  ASSERT_EQ(sequence->size(), 5U);
+  ASSERT_EQ(sequence->skipped().size(), 2U);
+  EXPECT_EQ(sequence->skipped()[0].index, 2U);
+  EXPECT_THAT(sequence->skipped()[0].reason, testing::HasSubstr("rgb.txt:8: stamp 0.200000"));
+  EXPECT_THAT(sequence->facts().notes,
+              testing::ElementsAre(testing::HasSubstr("1 lines of depth.txt were left out")));
+}
+
+TEST(TumReader, NamesDecimalCommas) {
+  const TestFolder folder;
+  write_sequence(folder);
+  folder.write("rgb.txt", "0,000 rgb/0.png\n0,100 rgb/1.png\n");
+  expect_input_error([&] { open_sequence(folder.path()); },
+                     {"rgb.txt:1", "'0,000' has a decimal comma", "decimal point"});
+  write_sequence(folder);
+  folder.write("groundtruth.txt", "0,0 0 0 0 0 0 0 1,0\n");
+  EXPECT_THAT(open_sequence(folder.path())->facts().truth_problem,
+              testing::HasSubstr("decimal commas"));
+}
+
+TEST(TumReader, GivesAHintAboutStampsThatAreNoSeconds) {
+  const TestFolder folder;
+  write_sequence(folder);
+  folder.write("rgb.txt", "1403636579763 rgb/0.png\n1403636579813 rgb/1.png\n");
+  folder.write("depth.txt", "1403636579763 depth/0.png\n1403636579813 depth/1.png\n");
+  const auto sequence = open_sequence(folder.path());
+  EXPECT_THAT(sequence->facts().notes,
+              testing::ElementsAre(testing::HasSubstr("50 s apart: they look like milliseconds"),
+                                   testing::HasSubstr("have no time in common")));
+}
+
 TEST(TumReader, RefusesStampsGoingBackwards) {
   const TestFolder folder;
   write_sequence(folder);
@@ -122,11 +206,15 @@ TEST(TumReader, RefusesStampsGoingBackwards) {
                      {"depth.txt:3", "0.050000 after 0.100000", "rising"});
 }
 
-TEST(TumReader, RefusesMissingListsAndBrokenTruth) {
+TEST(TumReader, NeedsItsListsButNoTruth) {
   const TestFolder folder;
   write_sequence(folder);
   folder.write("groundtruth.txt", "0.0 0 0 0 0 0 0 2\n");
-  expect_input_error([&] { open_sequence(folder.path()); }, {"groundtruth.txt:1", "length 2"});
+  const auto sequence = open_sequence(folder.path());
+  EXPECT_TRUE(sequence->ground_truth().empty());
+  EXPECT_THAT(sequence->facts().truth_problem, testing::HasSubstr("groundtruth.txt:1"));
+  EXPECT_THAT(sequence->facts().notes, testing::ElementsAre(testing::HasSubstr("length 2")));
+  expect_input_error([&] { load_ground_truth(folder.path()); }, {"groundtruth.txt:1", "length 2"});
   std::filesystem::remove(folder / "groundtruth.txt");
   EXPECT_TRUE(open_sequence(folder.path())->ground_truth().empty());
   std::filesystem::remove(folder / "depth.txt");
@@ -187,11 +275,34 @@ TEST(TumReader, FindsTheCalibration) {
   options.calibration = plain / "other.yaml";
   EXPECT_EQ(open_sequence(plain.path(), options)->camera().width, 64);
 
-  const TestFolder named("rgbd_dataset_freiburg2_desk");
-  write_sequence(named);
-  std::filesystem::remove(named / "calibration.yaml");
   // The preset is found and is that of 640x480 images.
-  expect_input_error([&] { open_sequence(named.path()); }, {"expected 640x480", "preset tum_fr2"});
+  for (const char* name : {"rgbd_dataset_freiburg2_desk", "fr2_desk", "tum_fr2", "TUM-FR2-x"}) {
+    const TestFolder named(name);
+    write_sequence(named);
+    std::filesystem::remove(named / "calibration.yaml");
+    expect_input_error([&] { open_sequence(named.path()); },
+                       {"expected 640x480", "preset tum_fr2 (by the folder's name)"});
+  }
+  // 30 frames per second are no camera, nor is a name that has such letters somewhere.
+  for (const char* name : {"d435_fr30", "fr30", "my_fr1_copy", "d435_fr1", "fr1", "freiburg12"}) {
+    const TestFolder named(name);
+    write_sequence(named);
+    std::filesystem::remove(named / "calibration.yaml");
+    const std::string expected = name == std::string("fr1") ? "preset tum_fr1" : "no calibration";
+    expect_input_error([&] { open_sequence(named.path()); }, {expected});
+  }
+}
+
+TEST(TumReader, SaysThatItGuessesTheCamera) {
+  const TestFolder folder("fr3_desk");
+  folder.write("rgb/0.png", test_color(640, 480));
+  folder.write("depth/0.png", test_depth(5000, 640, 480));
+  folder.write("rgb.txt", "0 rgb/0.png\n");
+  folder.write("depth.txt", "0 depth/0.png\n");
+  const auto sequence = open_sequence(folder.path());
+  EXPECT_EQ(sequence->facts().calibration_source, "preset tum_fr3 (by the folder's name)");
+  EXPECT_THAT(sequence->facts().notes,
+              testing::ElementsAre(testing::HasSubstr("guessed from the folder's name")));
 }
 
 TEST(TumReader, ReadsTheRealRecording) {
