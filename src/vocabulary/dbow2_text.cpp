@@ -229,7 +229,7 @@ int depth_of(const VocabularyTree& tree) {
 }  // namespace
 
 VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where) {
-  Lines lines(text, where);
+  Lines lines(without_byte_order_mark(text), where);
   if (!lines.next()) {
     throw InputError(
         fmt::format("{}: is empty, expected a vocabulary (FBoW or DBoW2 text)", where));

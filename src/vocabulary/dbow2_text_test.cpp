@@ -44,6 +44,10 @@ TEST(Dbow2Text, TakesCarriageReturnsAndBlankLinesAtTheEnd) {
   EXPECT_EQ(parse_dbow2_text(text + "\r\n\n  \n", "v").nodes.size(), 5U);
 }
 
+TEST(Dbow2Text, SkipsAByteOrderMark) {
+  EXPECT_EQ(parse_dbow2_text(std::string("\xEF\xBB\xBF") + kSmall, "v").nodes.size(), 5U);
+}
+
 TEST(Dbow2Text, ComesBackWithTheSameWords) {
   for (const bool binary : {false, true}) {
     const TestFolder folder;
