@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <random>
 
 #include "evaluation/mat_file.h"
 #include "io/primitives/test_folder.h"
@@ -112,6 +113,37 @@ TEST(MatFile, RefusesEntriesBeyondTheMatrix) {
               element(5, word(0) + word(9) + word(0) + word(1)) + element(9, std::string(8, '\1')));
   expect_input_error([&] { entries_of(folder.write("b.mat", header() + falling_starts)); },
                      {"b.mat", "damaged"});
+}
+
+// Whatever the bytes say, a small file costs little (libmatio takes gigabytes for some of these).
+TEST(MatFile, SurvivesRandomDamage) {
+  const TestFolder folder;
+  const double values[] = {4.5, -2.0};
+  const std::string sparse = element(
+      14, array_start(5, 3, 3, 2) + element(5, word(2) + word(1)) +
+              element(5, word(0) + word(1) + word(1) + word(2)) +
+              element(9, std::string(reinterpret_cast<const char*>(values), sizeof(values))));
+  const std::uint32_t words[] = {0,  1,  2,         3,       5,          9,          14,
+                                 15, 64, 1U << 16U, 1000000, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF};
+  std::mt19937 random(5);
+  int refused = 0;
+  for (int i = 0; i < 4000; ++i) {
+    std::string matrix = random() % 2 == 0 ? sparse : dense_matrix();
+    for (unsigned k = 1 + random() % 3; k > 0; --k) {
+      if (random() % 2 == 0) {
+        matrix[random() % matrix.size()] = static_cast<char>(random());
+      } else {
+        matrix.replace(random() % (matrix.size() / 4) * 4, 4, word(words[random() % 14]));
+      }
+    }
+    if (random() % 2 == 0) matrix = compressed(matrix);
+    try {
+      entries_of(folder.write("m.mat", header() + matrix));
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 1000);
 }
 
 TEST(MatFile, SaysWhatIsWrongWithOtherVersions) {

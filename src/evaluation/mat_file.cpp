@@ -139,6 +139,13 @@ class ElementBytes {
     }
   }
 
+  /// No more bytes than these can still be read: what is there, inflated as far as deflate can.
+  std::uint64_t most_left() const {
+    constexpr std::uint64_t kMostInflation = 1032;
+    constexpr std::uint64_t kMostPending = std::uint64_t{1} << 16;
+    return compressed_ ? kMostInflation * stream_.avail_in + kMostPending : bytes_.size();
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(
         fmt::format("{}: matrix data are {}, expected a whole MATLAB v5 file", path_, what));
@@ -253,6 +260,7 @@ void read_dense(ElementBytes& bytes, const MatShape& shape, const MatEntryVisito
 void read_sparse(ElementBytes& bytes, const ArrayHeader& header, const MatEntryVisitor& entry) {
   const std::size_t columns = header.shape.columns;
   if (header.stored > kMostStored) bytes.fail("too many");
+  if (header.stored + std::uint64_t{columns} > bytes.most_left()) bytes.fail("cut short");
   std::vector<std::uint32_t> rows(header.stored);
   std::vector<std::uint32_t> starts(columns + 1);
   for_each_value(bytes, rows.size(), [&](std::uint64_t i, double value) {
