@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +17,7 @@
 #include "evaluation/ate.h"
 #include "evaluation/rpe.h"
 #include "io/formats/trajectory_file.h"
+#include "io/formats/trajectory_reader.h"
 
 namespace dxslam {
 namespace {
@@ -66,12 +69,13 @@ class Evo : public testing::Test {
   std::string estimate_file() const { return (folder_ / "estimate.txt").string(); }
 
   // stats.json of a run of evo on the two files.
-  nlohmann::json run(const std::string& program, const std::string& arguments) {
+  nlohmann::json run(const std::string& program, const std::string& arguments,
+                     const std::string& format = "tum") {
     const std::string archive = (folder_ / "result.zip").string();
     const std::string command = fmt::format(
-        "cd '{}' && HOME='{}' '{}' tum '{}' '{}' {} --save_results '{}' > evo.log 2>&1 && "
+        "cd '{}' && HOME='{}' '{}' {} '{}' '{}' {} --save_results '{}' > evo.log 2>&1 && "
         "'{}' -m zipfile -e '{}' result",
-        folder_.string(), folder_.string(), (programs_ / program).string(), truth_file(),
+        folder_.string(), folder_.string(), (programs_ / program).string(), format, truth_file(),
         estimate_file(), arguments, archive, (programs_ / "python").string(), archive);
     fs::remove_all(archive);
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
@@ -118,6 +122,48 @@ TEST_F(Evo, AgreesOnRpe) {
   options.alignment = Alignment::kSim3;
   report = evaluate_rpe(truth_, estimate_, options);
   expect_equal(report.translation, run("evo_rpe", "-d 10 -u f -as -r trans_part"));
+}
+
+std::string kitti_rows(const Trajectory& trajectory) {
+  std::string text;
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Matrix3d r = pose.world_from_camera.rotation().toRotationMatrix();
+    const Eigen::Vector3d& t = pose.world_from_camera.translation();
+    for (int i = 0; i < 3; ++i) {
+      text += fmt::format("{:.12g} {:.12g} {:.12g} {:.12g}{}", r(i, 0), r(i, 1), r(i, 2), t[i],
+                          i < 2 ? ' ' : '\n');
+    }
+  }
+  return text;
+}
+
+std::string euroc_rows(const Trajectory& trajectory) {
+  std::string text = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], ...\n";
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d& t = pose.world_from_camera.translation();
+    const Eigen::Quaterniond& q = pose.world_from_camera.rotation();
+    text += fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},0,0,0,0,0,0,0,0,0\n",
+                        static_cast<std::int64_t>(std::llround(pose.stamp * 1e9)), t.x(), t.y(),
+                        t.z(), q.w(), q.x(), q.y(), q.z());
+  }
+  return text;
+}
+
+TEST_F(Evo, AgreesOnFilesOfKittiAndEuroc) {
+  make_trajectories();
+  truth_.resize(100);
+  estimate_.resize(100);
+  std::ofstream(truth_file()) << kitti_rows(truth_);
+  std::ofstream(estimate_file()) << kitti_rows(estimate_);
+  const TrajectoryFile truth = read_trajectory_file(truth_file());
+  const TrajectoryFile estimate = read_trajectory_file(estimate_file());
+  expect_equal(evaluate_ate(truth.poses, estimate.poses).position, run("evo_ape", "-a", "kitti"));
+
+  make_trajectories();
+  std::ofstream(truth_file()) << euroc_rows(truth_);
+  const TrajectoryFile euroc = read_trajectory_file(truth_file());
+  ASSERT_EQ(euroc.format, TrajectoryFormat::kEuroc);
+  expect_equal(evaluate_ate(euroc.poses, estimate_).position, run("evo_ape", "-a", "euroc"));
 }
 
 }  // namespace

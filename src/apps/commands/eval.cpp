@@ -6,31 +6,35 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/commands.h"
 #include "apps/commands/eval_openloris.h"
 #include "apps/console.h"
 #include "apps/statistics_json.h"
+#include "apps/trajectory_pair.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "evaluation/ate.h"
 #include "evaluation/rpe.h"
+#include "evaluation/time_offset.h"
 #include "evaluation/trajectory_svg.h"
-#include "io/formats/trajectory_file.h"
+#include "io/formats/trajectory_reader.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
-#include "io/recordings/sequence_reader.h"
 
 namespace dxslam::apps {
 namespace {
 
+constexpr double kMaxDifference = 0.01;  // seconds
+
 struct EvalArguments {
-  std::string truth;
-  std::string estimate;
+  TrajectoryFiles files;
   std::string json;
   std::string plot;
   std::string alignment = "se3";
-  double max_difference = 0.01;
+  std::optional<double> max_difference;
+  std::optional<double> search_offset;
   double delta = 1.0;
   std::string unit = "frames";
   bool consecutive = false;
@@ -55,11 +59,44 @@ void write_json(const std::string& path, const nlohmann::ordered_json& report) {
   if (!path.empty()) write_file_atomically(path, to_json_text(report));
 }
 
+TrajectoryPair load_pair(const EvalArguments& arguments) {
+  TrajectoryPair pair = load_trajectory_pair(arguments.files);
+  for (const std::string& note : pair.notes) warn("{}", note);
+  if (pair.by_index && arguments.max_difference) {
+    throw InputError(
+        "option --max-difference is for stamps, expected none for poses without them (KITTI)");
+  }
+  if (pair.by_index && arguments.search_offset) {
+    throw InputError(
+        "option --search-offset is for stamps, expected none for poses without them (KITTI)");
+  }
+  return pair;
+}
+
+double max_difference(const EvalArguments& arguments) {
+  return arguments.max_difference.value_or(kMaxDifference);
+}
+
+// Moves the estimate in time to where it fits best; returns by how much, if asked for.
+std::optional<double> correct_clock(const EvalArguments& arguments, TrajectoryPair& pair) {
+  if (!arguments.search_offset) return std::nullopt;
+  TimeOffsetOptions options;
+  options.range = *arguments.search_offset;
+  options.alignment = alignment_of(arguments.alignment);
+  const TimeOffset found = search_time_offset(pair.truth, pair.estimate, options);
+  pair.estimate = shifted(pair.estimate, found.offset);
+  print("time offset {:+.4f} s, added to the stamps of the estimate{}\n", found.offset,
+        found.at_edge ? ": the end of what was searched, a longer search may fit better" : "");
+  return found.offset;
+}
+
 void evaluate_ate_command(const EvalArguments& arguments) {
-  const Trajectory truth = load_ground_truth(arguments.truth);
-  const Trajectory estimate = read_trajectory(arguments.estimate);
+  TrajectoryPair pair = load_pair(arguments);
+  const std::optional<double> offset = correct_clock(arguments, pair);
+  const Trajectory& truth = pair.truth;
+  const Trajectory& estimate = pair.estimate;
   const AteReport report =
-      evaluate_ate(truth, estimate, {alignment_of(arguments.alignment), arguments.max_difference});
+      evaluate_ate(truth, estimate, {alignment_of(arguments.alignment), max_difference(arguments)});
   print_header();
   print_row("ATE (m)", report.position);
   const std::string& alignment = arguments.alignment;
@@ -70,13 +107,15 @@ void evaluate_ate_command(const EvalArguments& arguments) {
   write_json(arguments.json, {{"metric", "ate"},
                               {"unit", "m"},
                               {"alignment", alignment},
-                              {"max_difference_s", arguments.max_difference},
+                              {"max_difference_s", max_difference(arguments)},
+                              {"time_offset_s", offset ? nlohmann::ordered_json(*offset)
+                                                       : nlohmann::ordered_json(nullptr)},
                               {"truth_poses", truth.size()},
                               {"estimate_poses", estimate.size()},
                               {"scale", scale},
                               {"position", statistics_json(report.position)}});
   if (arguments.plot.empty()) return;
-  const std::string title = std::filesystem::path(arguments.estimate).filename().string();
+  const std::string title = std::filesystem::path(arguments.files.estimate).filename().string();
   write_file_atomically(
       arguments.plot,
       draw_trajectory_svg(
@@ -86,16 +125,18 @@ void evaluate_ate_command(const EvalArguments& arguments) {
 }
 
 void evaluate_rpe_command(const EvalArguments& arguments) {
-  const Trajectory truth = load_ground_truth(arguments.truth);
-  const Trajectory estimate = read_trajectory(arguments.estimate);
+  const TrajectoryPair pair = load_pair(arguments);
+  if (!pair.has_stamps && arguments.unit == "seconds") {
+    throw InputError("--delta-unit is seconds, expected frames for poses without stamps (KITTI)");
+  }
   RpeOptions options;
   options.delta = arguments.delta;
   options.unit =
       arguments.unit == "frames" ? RpeOptions::Unit::kFrames : RpeOptions::Unit::kSeconds;
   options.all_pairs = !arguments.consecutive;
   options.alignment = alignment_of(arguments.alignment);
-  options.max_difference = arguments.max_difference;
-  const RpeReport report = evaluate_rpe(truth, estimate, options);
+  options.max_difference = max_difference(arguments);
+  const RpeReport report = evaluate_rpe(pair.truth, pair.estimate, options);
   print_header();
   print_row("RPE (m)", report.translation);
   print_row("RPE (degrees)", report.rotation);
@@ -115,11 +156,21 @@ CLI::App* add_metric(CLI::App& eval, const char* name, const char* about,
                      const std::shared_ptr<EvalArguments>& arguments) {
   CLI::App* metric = eval.add_subcommand(name, about);
   metric
-      ->add_option("GROUNDTRUTH", arguments->truth,
-                   "true trajectory: a file in TUM format or the folder of a recording")
+      ->add_option("GROUNDTRUTH", arguments->files.truth,
+                   "true trajectory: a file (TUM, KITTI or EuRoC) or the folder of a recording")
       ->required();
-  metric->add_option("ESTIMATE", arguments->estimate, "estimated trajectory in TUM format")
+  metric
+      ->add_option("ESTIMATE", arguments->files.estimate,
+                   "estimated trajectory: a file (TUM, KITTI or EuRoC)")
       ->required();
+  metric
+      ->add_option("--format", arguments->files.format,
+                   "of ESTIMATE: auto (by its columns), tum, kitti or euroc")
+      ->check(CLI::IsMember(trajectory_format_names()))
+      ->option_text("NAME");
+  metric->add_option("--truth-format", arguments->files.truth_format, "of GROUNDTRUTH, likewise")
+      ->check(CLI::IsMember(trajectory_format_names()))
+      ->option_text("NAME");
   metric->add_option("--align", arguments->alignment, "se3, sim3 (with scale) or none")
       ->check(CLI::IsMember({"se3", "sim3", "none"}))
       ->option_text("se3|sim3|none");
@@ -144,6 +195,10 @@ void add_eval_command(CLI::App& app) {
       add_metric(*eval, "ate", "absolute trajectory error: distance of positions", arguments);
   ate->add_option("--plot", arguments->plot, "also draw both trajectories as an SVG picture")
       ->option_text("FILE.svg");
+  ate->add_option("--search-offset", arguments->search_offset,
+                  "find the offset of the clocks, up to so many seconds, that fits best")
+      ->check(number(1e-3, 100.0))
+      ->option_text("S");
   ate->callback([arguments] { evaluate_ate_command(*arguments); });
 
   const auto relative = std::make_shared<EvalArguments>();

@@ -21,7 +21,9 @@ constexpr const char* kHeader = "# timestamp tx ty tz qx qy qz qw\n";
 constexpr const char* kExpected = "a trajectory in TUM format (stamp tx ty tz qx qy qz qw)";
 constexpr double kQuaternionTolerance = 0.01;
 
-StampedPose parse_pose(const std::string& path, const TextRow& row) {
+}  // namespace
+
+StampedPose parse_tum_pose(const std::string& path, const TextRow& row) {
   static constexpr const char* kColumns[] = {"stamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   if (row.fields.size() != std::size(kColumns)) {
     refuse_columns(path, row, "8 (stamp tx ty tz qx qy qz qw)");
@@ -39,8 +41,6 @@ StampedPose parse_pose(const std::string& path, const TextRow& row) {
   return {v[0], SE3(rotation, Eigen::Vector3d(v[1], v[2], v[3]))};
 }
 
-}  // namespace
-
 Trajectory read_trajectory(const std::string& path) {
   Trajectory trajectory;
   for_each_row(path, kExpected, [&](const TextRow& row) {
@@ -48,7 +48,7 @@ Trajectory read_trajectory(const std::string& path) {
       throw InputError(fmt::format("{}: more than {} poses, expected less", at_line(path, row.line),
                                    limits::kPoses));
     }
-    trajectory.push_back(parse_pose(path, row));
+    trajectory.push_back(parse_tum_pose(path, row));
     const std::size_t n = trajectory.size();
     if (n > 1 && trajectory[n - 1].stamp < trajectory[n - 2].stamp) {
       throw InputError(fmt::format("{}: stamp {:.6f} after {:.6f}, expected rising stamps",

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/trajectory.h"
+#include "io/primitives/text_file.h"
 
 namespace dxslam {
 
@@ -15,6 +16,9 @@ namespace dxslam {
 /// naming file and line for anything else: other column counts, NaN, stamps going backwards, a
 /// quaternion whose length is off by more than 1 %, no pose at all.
 Trajectory read_trajectory(const std::string& path);
+
+/// One such row. Throws InputError as read_trajectory does.
+StampedPose parse_tum_pose(const std::string& path, const TextRow& row);
 
 /// One row without line end, as read_trajectory reads it: microseconds, 1e-9 m.
 std::string format_pose(const StampedPose& pose);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "io/formats/pose_matrix.h"
 #include "io/primitives/text_file.h"
 #include "io/recordings/sequence_formats.h"
 

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "io/calibration/calibration.h"
+#include "io/formats/pose_matrix.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/text_file.h"
 #include "io/primitives/yaml_text.h"
@@ -25,6 +26,7 @@ constexpr const char* kBaseFrame = "base_link";
 // The dataset's files are OpenCV's dialect, whose first line "%YAML:1.0" is not YAML.
 YAML::Node load_opencv_yaml(const std::string& path) {
   std::string text = read_file(path, "a YAML file of OpenLORIS-Scene", limits::kYamlBytes);
+  text.erase(0, text.size() - without_byte_order_mark(text).size());
   if (!text.empty() && text.front() == '%') {
     const std::size_t end = std::min(text.find('\n'), text.size());
     text.replace(0, end, end, ' ');

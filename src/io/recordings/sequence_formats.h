@@ -44,9 +44,6 @@ void associate_lists(const std::string& folder, const std::string& color_list,
 /// Sets the true trajectory to what `read` returns. Where that throws InputError the recording has
 /// none, and the reason becomes a note: the truth is no part of what a recording needs.
 void take_truth(SequenceListing& listing, const std::function<Trajectory()>& read);
-/// world_from_camera of 16 numbers, row by row. `where` is "FILE:LINE" for messages. Throws unless
-/// the rotation is orthonormal within 1 % and the last row is 0 0 0 1.
-SE3 pose_from_row_major(const double (&values)[16], const std::string& where);
 /// The images of a folder (list_image_files); its notes go to those of the listing. Throws
 /// InputError if there is none.
 std::vector<std::filesystem::path> list_images(const std::string& folder, SequenceListing& listing);

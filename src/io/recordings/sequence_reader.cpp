@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "io/formats/trajectory_file.h"
 #include "io/primitives/image_listing.h"
 #include "io/primitives/name_order.h"
 #include "io/primitives/text_file.h"
@@ -182,11 +181,18 @@ void require_depth(const RgbdSequence& sequence) {
       sequence.name()));
 }
 
-Trajectory load_ground_truth(const std::string& file_or_folder) {
+TrajectoryFile load_ground_truth(const std::string& file_or_folder, const std::string& format) {
   std::error_code error;
-  if (!fs::is_directory(file_or_folder, error)) return read_trajectory(file_or_folder);
+  if (!fs::is_directory(file_or_folder, error)) return read_trajectory_file(file_or_folder, format);
+  for (const char* euroc :
+       {"state_groundtruth_estimate0/data.csv", "mav0/state_groundtruth_estimate0/data.csv"}) {
+    const std::string file = in_folder(file_or_folder, euroc);
+    if (fs::exists(file, error)) return read_trajectory_file(file, "euroc");
+  }
   const std::unique_ptr<RgbdSequence> sequence = open_sequence(file_or_folder);
-  if (!sequence->ground_truth().empty()) return sequence->ground_truth();
+  if (!sequence->ground_truth().empty()) {
+    return {sequence->ground_truth(), TrajectoryFormat::kTum, {}};
+  }
   const std::string& problem = sequence->facts().truth_problem;
   throw InputError(
       problem.empty()

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/sequence.h"
+#include "io/formats/trajectory_reader.h"
 
 namespace dxslam {
 
@@ -57,8 +58,9 @@ std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
 /// Throws InputError for a recording in which no frame has a depth image: for whatever needs depth.
 void require_depth(const RgbdSequence& sequence);
 
-/// The true trajectory: of a file in TUM format or, for a folder, of the recording in it.
-/// Throws InputError if there is none.
-Trajectory load_ground_truth(const std::string& file_or_folder);
+/// The true trajectory: of a file (`format` as in read_trajectory_file) or, for a folder, of the
+/// recording in it or of EuRoC's state_groundtruth_estimate0. Throws InputError if there is none.
+TrajectoryFile load_ground_truth(const std::string& file_or_folder,
+                                 const std::string& format = "auto");
 
 }  // namespace dxslam

@@ -69,9 +69,9 @@ TEST(SequenceReader, LoadsTheTruthOfAFileOrAFolder) {
   folder.write("calibration.yaml", test_calibration());
   expect_input_error([&] { load_ground_truth(folder.path()); }, {"no true trajectory"});
   folder.write("poses.txt", "1 0 0 7 0 1 0 0 0 0 1 0 0 0 0 1\n");
-  EXPECT_EQ(load_ground_truth(folder.path()).at(0).world_from_camera.translation().x(), 7.0);
+  EXPECT_EQ(load_ground_truth(folder.path()).poses.at(0).world_from_camera.translation().x(), 7.0);
   const std::string file = folder.write("t.txt", "0 8 0 0 0 0 0 1\n");
-  EXPECT_EQ(load_ground_truth(file).at(0).world_from_camera.translation().x(), 8.0);
+  EXPECT_EQ(load_ground_truth(file).poses.at(0).world_from_camera.translation().x(), 8.0);
 }
 
 // Damaged lists and calibrations end in an InputError or a usable sequence, in nothing else.

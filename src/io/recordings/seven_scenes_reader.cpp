@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/calibration/calibration.h"
+#include "io/formats/pose_matrix.h"
 #include "io/primitives/text_file.h"
 #include "io/recordings/sequence_formats.h"
 
