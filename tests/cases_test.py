@@ -48,6 +48,14 @@ EXPECTED = {
     "15-old-files-stay-in-out": (
         [r"older than this run: *\n", r"one map now, but there is *\n"], []),
     "11-jpeg-with-trailer-refused": (["exit 0"], ["truncated", "none of"]),
+    "10-folder-name-picks-wrong-camera": ([r"no calibration", r"--- exit 3"], []),
+    "13-file-names-without-leading-zeros": (
+        [r"named frame1.jpg, \.\.\.: exit 0\nATE \(m\) +0\.00"], [r"ATE \(m\) +0\.[1-9]"]),
+    "14-association-ignored": ([r"--association", r"folder: exit 3",
+                                r"--low-light-in 99 of one sequence: exit [23]"], []),
+    "19-spaces-bom-and-commas": (
+        [r"space in a listed name: exit 0", r"quoted: exit 0", r"decimal comma, expected",
+         r"decimal comma: exit 3", r"the same with BOM: exit 0"], []),
 }
 
 # A crash, an internal error, or a death by a signal (128 + its number).

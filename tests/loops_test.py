@@ -24,8 +24,8 @@ class Loops(Recorded):
 
     def loops(self, *options, recording=None, truth="poses", method="orb-bow", words=None):
         return dxslam("loops", recording or self.recording, "--ground-truth", truth, "--method",
-                      method, "--orb-vocabulary", words or self.words, "--window", 0.3, "--radius", 0.5,
-                      *options)
+                      method, "--orb-vocabulary", words or self.words, "--window", 0.3,
+                      *(["--radius", 0.5] if truth == "poses" else []), *options)
 
     def test_writes_candidates_curve_and_summary(self):
         out = self.folder / "one"
@@ -88,7 +88,9 @@ class Loops(Recorded):
         matrix = self.folder / "small.txt"
         matrix.write_text("0 0\n1 0\n")
         self.refuse(self.loops(truth=matrix), "small.txt", "2 frames", f"{FRAMES}")
-        self.refuse(self.loops("--angle", 500), "angle", "180")
+        done = self.loops("--angle", 500)
+        self.assertEqual(done.returncode, BAD_USAGE, done.stderr)
+        self.assertIn("180", done.stderr)
         self.assertEqual(dxslam("loops", self.recording).returncode, BAD_USAGE)
 
 

@@ -12,8 +12,11 @@
 #include <random>
 #include <regex>
 
+#include "apps/console.h"
+#include "apps/open_recording.h"
 #include "core/error.h"
 #include "io/primitives/image_file.h"
+#include "io/primitives/image_listing.h"
 #include "io/recordings/sequence_reader.h"
 #include "synthetic/low_light.h"
 
@@ -40,21 +43,20 @@ Part parse_part(const std::string& source) {
   return part;
 }
 
-bool is_photo(const fs::path& path) {
-  const std::string name = path.filename().string();
-  const bool of_recording =
-      name.find(".color.") != std::string::npos || name.find(".depth.") != std::string::npos;
-  return has_image_ending(path) && !of_recording;
-}
-
-// Images that lie directly in a folder; recordings keep theirs in folders below it.
+// Images that lie directly in a folder; recordings keep theirs in folders below it, but for
+// 7-Scenes.
 std::vector<std::string> photos_in(const std::string& folder) {
   std::vector<std::string> photos;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (is_photo(entry.path())) photos.push_back(entry.path().string());
+  const ImageListing listing = list_image_files(folder);
+  for (const fs::path& path : listing.files) {
+    const std::string name = path.filename().string();
+    const bool of_recording =
+        name.find(".color.") != std::string::npos || name.find(".depth.") != std::string::npos;
+    if (!of_recording) photos.push_back(path.string());
   }
-  std::sort(photos.begin(), photos.end());
+  if (!photos.empty()) {
+    for (const std::string& note : listing.notes) warn("{}: {}", folder, note);
+  }
   return photos;
 }
 
@@ -67,7 +69,7 @@ ImageStream::ImageStream(const std::vector<std::string>& sources, std::size_t st
 void ImageStream::add_source(const std::string& source, std::size_t stride) {
   const Part part = parse_part(source);
   const std::vector<std::string> photos = photos_in(part.folder);
-  const std::size_t count = photos.empty() ? open_sequence(part.folder)->size() : photos.size();
+  const std::size_t count = photos.empty() ? open_recording(part.folder)->size() : photos.size();
   if (part.first >= std::min(count, part.end)) {
     throw InputError(
         fmt::format("{}: has {} images, expected some in the part asked for", source, count));

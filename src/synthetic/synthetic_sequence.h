@@ -54,7 +54,7 @@ class SyntheticSequence : public RgbdSequence {
   SyntheticOptions options_;
   std::string name_;
   Camera camera_;
-  RecordingFacts facts_{"the synthetic camera", true, 0.0, 0.0};
+  RecordingFacts facts_{"the synthetic camera", true, 0.0, 0.0, {}, {}};
   Layout layout_;
   World world_;
   std::optional<CameraPath> path_;

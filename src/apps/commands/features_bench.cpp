@@ -11,6 +11,7 @@
 
 #include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/open_recording.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
@@ -54,7 +55,7 @@ double percentile(std::vector<double> values, double share) {
 }
 
 std::vector<cv::Mat> read_frames(const BenchArguments& arguments) {
-  const auto sequence = open_sequence(arguments.sequence);
+  const auto sequence = open_recording(arguments.sequence);
   const std::size_t count = std::min(sequence->size(), static_cast<std::size_t>(arguments.frames));
   std::vector<cv::Mat> frames;
   for (std::size_t i = 0; i < count; ++i) {

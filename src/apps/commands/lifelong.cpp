@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/online_trajectory.h"
+#include "apps/open_recording.h"
 #include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/recording_report.h"
@@ -81,9 +82,14 @@ void check_name(const char* option, const std::string& name) {
 }
 
 Recordings open_all(const LifelongArguments& arguments) {
+  for (const int number : arguments.low_light) {
+    if (static_cast<std::size_t>(number) <= arguments.sequences.size()) continue;
+    throw InputError(fmt::format("--low-light-in {}: expected the number of a sequence, 1 to {}",
+                                 number, arguments.sequences.size()));
+  }
   Recordings all;
   for (const std::string& folder : arguments.sequences) {
-    all.push_back(stoppable(open_sequence(folder, arguments.settings.reader)));
+    all.push_back(stoppable(open_recording(folder, arguments.settings.reader)));
     require_depth(*all.back());
     const Camera& first = all.front()->camera();
     const Camera& camera = all.back()->camera();

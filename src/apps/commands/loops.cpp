@@ -9,13 +9,13 @@
 #include "apps/console.h"
 #include "apps/loop_experiment.h"
 #include "apps/loops_output.h"
+#include "apps/open_recording.h"
 #include "apps/progress.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "core/options.h"
 #include "evaluation/statistics.h"
 #include "io/formats/options_yaml.h"
-#include "io/recordings/sequence_reader.h"
 #include "synthetic/low_light.h"
 
 namespace dxslam::apps {
@@ -51,10 +51,17 @@ void find_loops(const LoopsArguments& arguments) {
   reader.format = settings.format;
   reader.eye = settings.eye;
   reader.needs_calibration = false;
-  const std::unique_ptr<RgbdSequence> sequence = open_sequence(settings.sequence, reader);
+  const std::unique_ptr<RgbdSequence> sequence = open_recording(settings.sequence, reader);
   if (settings.truth == "poses" && sequence->ground_truth().empty()) {
-    throw InputError(fmt::format(
-        "{}: the recording has no poses, expected --ground-truth with a file", settings.sequence));
+    const std::string& problem = sequence->facts().truth_problem;
+    throw InputError(
+        fmt::format("{}: the recording has no poses{}{}, expected --ground-truth with "
+                    "a file",
+                    settings.sequence, problem.empty() ? "" : ": ", problem));
+  }
+  if (settings.low_light_from && *settings.low_light_from >= sequence->size()) {
+    throw InputError(fmt::format("--low-light-from {}: expected a frame of the {} of {}",
+                                 *settings.low_light_from, sequence->size(), settings.sequence));
   }
   std::optional<LoopTruth> truth;  // a file is read at once, so that mistakes show at once
   if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
@@ -83,6 +90,30 @@ void find_loops(const LoopsArguments& arguments) {
   }
   if (folder) print("results in {}\n", folder->path());
   if (const int code = steps.report(kSuccess); code != kSuccess) throw CLI::RuntimeError(code);
+}
+
+// An option that the others leave without use is a mistake.
+void refuse_unused(const CLI::App& command, const LoopSettings& settings) {
+  bool words = false;
+  bool learned = false;
+  bool orb = false;
+  for (const std::string& name : settings.methods) {
+    const LoopMethod method = parse_loop_method(name);
+    orb = orb || method.orb;
+    learned = learned || !method.orb;
+    words = words || (!method.orb && method.words);
+  }
+  const auto check = [&](const char* option, bool used, const char* meant) {
+    if (used || command.count(option) == 0) return;
+    throw InputError(fmt::format("option {} has no use here, expected it {}", option, meant));
+  };
+  for (const char* option : {"--radius", "--angle", "--unclear", "--overlap"}) {
+    check(option, settings.truth == "poses", "with --ground-truth poses");
+  }
+  check("--low-light-gain", settings.low_light_from.has_value(), "with --low-light-from");
+  check("--features", learned, "with a method other than orb-bow");
+  check("--vocabulary", words, "with a method other than orb-bow that has words");
+  check("--orb-vocabulary", orb, "with method orb-bow");
 }
 
 void add_input_options(CLI::App& command, LoopSettings& settings) {
@@ -178,7 +209,10 @@ void add_loops_command(CLI::App& app) {
       app.add_subcommand("loops", "find loops in a recording and judge them by the truth");
   add_input_options(*command, arguments->settings);
   add_method_options(*command, *arguments);
-  command->callback([arguments] { find_loops(*arguments); });
+  command->callback([arguments, command] {
+    refuse_unused(*command, arguments->settings);
+    find_loops(*arguments);
+  });
 }
 
 }  // namespace dxslam::apps

@@ -11,6 +11,7 @@
 #include "apps/console.h"
 #include "apps/features_arguments.h"
 #include "apps/map_io.h"
+#include "apps/open_recording.h"
 #include "apps/output_steps.h"
 #include "apps/process.h"
 #include "apps/progress.h"
@@ -128,7 +129,7 @@ int relocalize(const RelocalizeArguments& arguments) {
   SystemOptions options;
   if (!arguments.config.empty()) options = load_options(arguments.config, options);
   const std::unique_ptr<RgbdSequence> sequence =
-      stoppable(open_sequence(arguments.sequence, arguments.reader));
+      stoppable(open_recording(arguments.sequence, arguments.reader));
   std::optional<ResultFolder> folder;
   if (!arguments.out.empty()) {
     folder.emplace(arguments.out, kFiles);

@@ -8,6 +8,7 @@
 
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/open_recording.h"
 #include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/run_output.h"
@@ -128,7 +129,7 @@ int run(const RunArguments& arguments) {
   const Stopwatch startup;
   Session session(arguments.settings);
   const std::unique_ptr<RgbdSequence> sequence =
-      stoppable(open_sequence(arguments.sequence, arguments.settings.reader));
+      stoppable(open_recording(arguments.sequence, arguments.settings.reader));
   require_depth(*sequence);
   session.claim_targets();
   OnlineTrajectory online(session.folder(), "trajectory.txt");
