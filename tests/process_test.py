@@ -211,8 +211,8 @@ class CommandLine(Made):
                       ["features", name], ["match", name, name], ["bench", "features", name],
                       ["vocab", "info", name], ["vocab", "train", name, "--out", "v"],
                       ["vocab", "convert", name, "v"], ["synth", self.folder / name],
-                      ["loops", name, "--method", "bow", "--ground-truth", "poses"],
-                      ["loops", self.recording, "--method", "bow", "--ground-truth", name]):
+                      ["loops", name, "--method", "orb-bow", "--ground-truth", "poses"],
+                      ["loops", self.recording, "--method", "orb-bow", "--ground-truth", name]):
             done = program(*words)
             self.assertEqual(done.returncode, BAD_INPUT, (words, done.stderr))
             said = [line for line in done.stderr.splitlines() if line.startswith("dxslam: ")]

@@ -113,7 +113,9 @@ class Vocab(Recorded):
 
     def test_refuses_nonsense(self):
         out = self.folder / "none.fbow"
-        self.refuse(self.train(out, "--branching", 1), "branching", "2 to 256")
+        done = self.train(out, "--branching", 1)
+        self.assertEqual(done.returncode, BAD_USAGE)
+        self.assertIn("2 to 256", done.stderr)
         self.refuse(self.train(out, source=self.folder / "missing"), "missing")
         self.assertEqual(self.train(out, "--method", "magic").returncode, BAD_USAGE)
         self.assertFalse(out.exists())
