@@ -39,7 +39,7 @@ double mib(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
 SystemOptions options_of(const Settings& settings, const std::string& mode) {
   SystemOptions options;
-  options.features = settings.features == "auto" ? default_extractor() : settings.features;
+  options.features = settings.features == "auto" ? choose_extractor().name : settings.features;
   options.mode = mode;
   options.deterministic = settings.deterministic;
   options.extractor.deterministic = settings.deterministic;

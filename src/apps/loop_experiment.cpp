@@ -151,7 +151,7 @@ class Experiment {
     }
     if (!wanted) return;
     const std::string name = orb                          ? std::string("orb")
-                             : settings_.features.empty() ? default_extractor()
+                             : settings_.features.empty() ? choose_extractor().name
                                                           : settings_.features;
     side = std::make_unique<FeatureSide>(name, settings_.extractor,
                                          orb ? settings_.orb_vocabulary : settings_.hf_vocabulary,

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "apps/recording_report.h"
+#include "apps/system_setup.h"
 #include "core/error.h"
 #include "evaluation/ate.h"
 #include "evaluation/trajectory_svg.h"
@@ -177,7 +178,10 @@ Json summarise(const Session& session, const RunRecord& record, const RgbdSequen
   summary["interrupted"] = record.interrupted;
   summary["low_light_gain"] = record.low_light ? Json(*record.low_light) : Json(nullptr);
   summary["realtime"] = record.realtime;
-  if (session.system() != nullptr) add_system(summary, *session.system());
+  if (session.system() != nullptr) {
+    add_system(summary, *session.system());
+    summary["notes"] = feature_notes(session.options(), session.system()->extractor());
+  }
   add_times(summary, record, offered);
   add_configuration(summary, session.settings(), session.options());
   return summary;

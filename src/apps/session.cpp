@@ -9,6 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/system_setup.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
 
@@ -90,6 +91,7 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
                                            thumbnails_->note(frame);
                                            on_frame(frame);
                                          });
+  tell_notes(feature_notes(options_, system->extractor()));
   header_ = map_header(camera, system->extractor());
   std::vector<std::string> pictures;
   if (stored) {

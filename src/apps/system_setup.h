@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "features/extractor.h"
 #include "slam/system_options.h"
 
 namespace dxslam::apps {
@@ -19,5 +21,11 @@ struct SystemArguments {
 /// Defaults, then the file, then the command line, with the features named. Throws InputError for
 /// what cannot be used.
 SystemOptions load_system_options(const SystemArguments& arguments);
+
+/// What the user should know about the features: of their choice and of the extractor itself.
+std::vector<std::string> feature_notes(const SystemOptions& options,
+                                       const FeatureExtractor& extractor);
+/// Says them on stderr.
+void tell_notes(const std::vector<std::string>& notes);
 
 }  // namespace dxslam::apps

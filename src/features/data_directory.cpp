@@ -26,6 +26,8 @@ std::string data_directory() {
   return DXSLAM_DATA_DIR;
 }
 
+bool is_data_directory_chosen() { return !environment("DXSLAM_DATA").empty(); }
+
 std::string shared_directory() {
   if (const std::string chosen = environment("DXSLAM_SHARED"); !chosen.empty()) return chosen;
   return (std::filesystem::path(data_directory()) / ".." / "shared").lexically_normal().string();

@@ -10,6 +10,8 @@ namespace dxslam {
 /// `../share/dxslam` beside the folder of the running program (an installed one), else the source
 /// folder the library was built from.
 std::string data_directory();
+/// Whether the user chose it by $DXSLAM_DATA.
+bool is_data_directory_chosen();
 
 /// Folder of data that is not shipped (e.g. other projects' networks): $DXSLAM_SHARED, else
 /// `../shared` beside data_directory().

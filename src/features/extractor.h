@@ -39,6 +39,9 @@ class FeatureExtractor {
   /// SHA-256 of the network's weights; empty where there is no network. Descriptors of different
   /// weights cannot be compared.
   virtual std::string model_hash() const { return ""; }
+  /// Sentences for the user about what works less well than it could: a cache that cannot be used,
+  /// weights that cannot be verified.
+  virtual std::vector<std::string> notes() const { return {}; }
   /// Steps of the last extract() in order, e.g. preprocess, network, detect, describe.
   virtual std::vector<StageTime> last_stages() const { return {}; }
 };

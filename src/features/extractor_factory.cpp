@@ -77,7 +77,20 @@ std::unique_ptr<FeatureExtractor> make_extractor(const std::string& name_or_mani
   return make_plain(name_or_manifest, options);
 }
 
-std::string default_extractor() { return find_manifest(kShipped).empty() ? "orb" : kShipped; }
+ExtractorChoice choose_extractor() {
+  const std::string manifest = find_manifest(kShipped);
+  if (!manifest.empty() && is_available(kShipped)) return {kShipped, ""};
+  const std::string place = (fs::path(data_directory()) / "models" / kShipped).string();
+  if (is_data_directory_chosen()) {
+    throw InputError(fmt::format(
+        "DXSLAM_DATA is {}, expected the folder with the network `{}`: no such files in {}",
+        data_directory(), kShipped, place));
+  }
+  return {"orb",
+          fmt::format("features are `orb`, less accurate: the files of the network `{}` were "
+                      "not found in {}; DXSLAM_DATA may name the folder above models/",
+                      kShipped, place)};
+}
 
 std::vector<std::string> known_extractors() {
   std::vector<std::string> models;

@@ -22,8 +22,15 @@ namespace dxslam {
 std::unique_ptr<FeatureExtractor> make_extractor(const std::string& name_or_manifest,
                                                  const ExtractorOptions& options = {});
 
-/// `hfnet` where its model is there, else `orb`.
-std::string default_extractor();
+/// What is taken where the user names no features.
+struct ExtractorChoice {
+  std::string name;
+  std::string note;  ///< a sentence for the user why it is not the network; "" if it is
+};
+
+/// `hfnet` where its model is there, else `orb`. Throws InputError if $DXSLAM_DATA is set, but does
+/// not hold the model.
+ExtractorChoice choose_extractor();
 
 /// Names that make_extractor() knows without a path, `orb` first; the model files of some may be
 /// missing.

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "core/error.h"
 #include "features/data_directory.h"
@@ -50,6 +52,34 @@ TEST(ExtractorFactory, KnowsWhichModelsAreThere) {
   EXPECT_THAT(known, testing::IsSupersetOf({"superpoint", "d2net", "hfnet_official", "xfeat"}));
   EXPECT_THAT(available, testing::IsSupersetOf({"orb", "opencv_orb"}));
   EXPECT_THAT(available, testing::Not(testing::Contains("d2net")));
+}
+
+class DataDirectory : public testing::Test {
+ protected:
+  DataDirectory() {
+    const char* const before = std::getenv("DXSLAM_DATA");
+    if (before != nullptr) before_ = before;
+  }
+  ~DataDirectory() override {
+    before_ ? ::setenv("DXSLAM_DATA", before_->c_str(), 1) : ::unsetenv("DXSLAM_DATA");
+  }
+
+ private:
+  std::optional<std::string> before_;
+};
+
+TEST_F(DataDirectory, IsRefusedWhereItWasChosenAndLacksTheNetwork) {
+  ::setenv("DXSLAM_DATA", "/nonexistent", 1);
+  try {
+    choose_extractor();
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("DXSLAM_DATA is /nonexistent"));
+    EXPECT_THAT(e.what(), HasSubstr("/nonexistent/models/hfnet"));
+  }
+  ::unsetenv("DXSLAM_DATA");
+  EXPECT_EQ(choose_extractor().name, "hfnet");
+  EXPECT_EQ(choose_extractor().note, "");
 }
 
 TEST(Orb, DescribesItsKeypoints) {

@@ -20,7 +20,7 @@ struct ExtractorOptions {
   /// every run and for every number of threads. Not read from files: it follows the system's.
   bool deterministic = false;
   /// Where compiled networks are kept: a folder, `auto` ($XDG_CACHE_HOME/dxslam or
-  /// ~/.cache/dxslam), or empty for nowhere.
+  /// ~/.cache/dxslam), or empty for nowhere. Not used where it cannot be written.
   std::string cache_dir = "auto";
   double score_threshold = -1.0;
   int nms_radius = -1;

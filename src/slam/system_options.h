@@ -17,6 +17,7 @@ namespace dxslam {
 /// Everything that can be set about the system; one default for every recording of a sensor.
 struct SystemOptions {
   std::string features = "auto";
+  std::string features_note;  ///< not an option: what is to be said about the choice of `auto`
   std::string mode = "slam";
   std::string vocabulary = "auto";
   bool close_loops = true;

@@ -10,6 +10,7 @@
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/system_setup.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
@@ -107,8 +108,13 @@ void add_low_light_option(CLI::App& command, double& gain) {
 }
 
 std::unique_ptr<FeatureExtractor> make_extractor(const FeatureArguments& arguments) {
-  return dxslam::make_extractor(
-      arguments.features.empty() ? default_extractor() : arguments.features, arguments.options);
+  const bool chosen = !arguments.features.empty();
+  const ExtractorChoice choice =
+      chosen ? ExtractorChoice{arguments.features, ""} : choose_extractor();
+  auto extractor = dxslam::make_extractor(choice.name, arguments.options);
+  if (!choice.note.empty()) tell_notes({choice.note});
+  tell_notes(extractor->notes());
+  return extractor;
 }
 
 cv::Mat read_image(const std::string& path, double gain) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/error.h"
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
+constexpr std::size_t kLongestName = 200;  // it stands in maps
 
 [[noreturn]] void fail(const YamlMap& map, const std::string& what) {
   throw InputError(fmt::format("{}: {}", map.where(), what));
@@ -240,6 +242,12 @@ ModelManifest read_model_manifest(const std::string& path) {
   ModelManifest manifest;
   manifest.path = path;
   manifest.name = required_text(top, "name");
+  if (manifest.name.size() > kLongestName ||
+      std::any_of(manifest.name.begin(), manifest.name.end(),
+                  [](unsigned char c) { return c < 0x20 || c == 0x7F; })) {
+    fail(top, fmt::format("`name` has {} bytes, expected at most {}, without control characters",
+                          manifest.name.size(), kLongestName));
+  }
   manifest.description = required_text(top, "description");
   manifest.licence = required_text(top, "licence");
   manifest.files = read_variants(required_map(top, "files"), folder);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
@@ -50,6 +51,18 @@ void normalize(std::vector<float>& vector) {
   for (float& v : vector) v = static_cast<float>(v * scale);
 }
 
+bool has_unknown_weights(const ModelManifest& manifest) {
+  const auto unknown = [](const ModelFile& file) {
+    const bool is_ir = std::filesystem::path(file.path).extension() == ".xml";
+    return file.given() && (file.sha256.empty() || (is_ir && file.weights_sha256.empty()));
+  };
+  const auto any_unknown = [&](const ModelVariants& files) {
+    return unknown(files.floating) || unknown(files.int8);
+  };
+  return any_unknown(manifest.files) ||
+         (manifest.global_head && any_unknown(manifest.global_head->files));
+}
+
 class NetworkExtractor final : public FeatureExtractor {
  public:
   NetworkExtractor(const ModelManifest& manifest, const ExtractorOptions& options)
@@ -70,6 +83,16 @@ class NetworkExtractor final : public FeatureExtractor {
     // Of the float weights: those of other precisions are made from them and give like descriptors.
     const ModelFile& file = manifest_.files.floating;
     return file.weights_sha256.empty() ? file.sha256 : file.weights_sha256;
+  }
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> notes;
+    if (!engine_.cache_note().empty()) notes.push_back(engine_.cache_note());
+    if (has_unknown_weights(manifest_)) {
+      notes.push_back(fmt::format(
+          "{}: says no SHA-256 of a model file, so another or a damaged model is not noticed",
+          manifest_.path));
+    }
+    return notes;
   }
   std::vector<StageTime> last_stages() const override { return timer_.stages(); }
 

@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "features/network/test_models.h"
+#include "features/sha256.h"
 
 namespace dxslam {
 namespace {
@@ -376,6 +377,49 @@ TEST(NetworkExtractor, KeepsCompiledNetworksInTheCacheFolder) {
   EXPECT_FALSE(std::filesystem::is_empty(options.cache_dir));
   const Features second = make_network_extractor(manifest, options)->extract(image, false);
   EXPECT_EQ(cv::norm(first.descriptors, second.descriptors, cv::NORM_INF), 0.0);
+}
+
+// OpenVINO itself would use many of these: other features without a word.
+TEST(NetworkExtractor, IsNotChangedByADamagedCache) {
+  const TemporaryFolder folder("damaged_cache");
+  const ModelManifest manifest = superpoint_manifest(folder);
+  ExtractorOptions options = exact_options();
+  options.cache_dir = folder.file("compiled");
+  const cv::Mat image = test_image(96, 64, 13);
+  const Features expected = make_network_extractor(manifest, options)->extract(image, false);
+  std::vector<std::filesystem::path> files;
+  for (const auto& file : std::filesystem::directory_iterator(options.cache_dir)) {
+    files.push_back(file.path());
+  }
+  ASSERT_EQ(files.size(), 1U) << "the key must not change from start to start";
+  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(files[0]));
+  for (int i = 0; i < 12; ++i) {
+    {
+      std::fstream file(files[0], std::ios::in | std::ios::out | std::ios::binary);
+      const std::streamoff at = size * i / 12 + 5;
+      file.seekg(at);
+      const int byte = file.get();
+      file.seekp(at);
+      file.put(static_cast<char>(byte ^ 0x10));
+    }
+    const Features found = make_network_extractor(manifest, options)->extract(image, false);
+    ASSERT_EQ(found.size(), expected.size()) << i;
+    EXPECT_EQ(cv::norm(found.descriptors, expected.descriptors, cv::NORM_INF), 0.0) << i;
+  }
+}
+
+TEST(NetworkExtractor, SaysThatItsCacheOrItsWeightsAreInDoubt) {
+  const TemporaryFolder folder("notes");
+  ModelManifest manifest = superpoint_manifest(folder);
+  ExtractorOptions options = exact_options();
+  options.cache_dir = "/proc/dxslam";
+  const auto extractor = make_network_extractor(manifest, options);
+  EXPECT_GT(extractor->extract(test_image(96, 64, 13), false).size(), 20U);
+  EXPECT_THAT(extractor->notes(), testing::ElementsAre(HasSubstr("/proc/dxslam"),
+                                                       HasSubstr("SHA-256 of a model file")));
+  manifest.files.floating.sha256 = sha256_of_file(manifest.files.floating.path);
+  manifest.files.floating.weights_sha256 = sha256_of_file(folder.file("superpoint.bin"));
+  EXPECT_THAT(make_network_extractor(manifest, exact_options())->notes(), testing::IsEmpty());
 }
 
 }  // namespace

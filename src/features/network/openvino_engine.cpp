@@ -185,6 +185,7 @@ class OpenVinoEngine::Impl {
   }
 
   const std::string& precision() const { return compiler_.precision().name; }
+  const std::string& cache_note() const { return compiler_.cache_note(); }
 
  private:
   struct Compiled {
@@ -336,5 +337,6 @@ std::vector<float> OpenVinoEngine::global_of(const cv::Mat& encoder) {
   return impl_->global_of(encoder);
 }
 const std::string& OpenVinoEngine::precision() const { return impl_->precision(); }
+const std::string& OpenVinoEngine::cache_note() const { return impl_->cache_note(); }
 
 }  // namespace dxslam

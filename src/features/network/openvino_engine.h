@@ -49,6 +49,9 @@ class OpenVinoEngine {
   /// inside any other function; calls of it wait for one another.
   std::vector<float> global_of(const cv::Mat& encoder);
 
+  /// As ModelCompiler::cache_note().
+  const std::string& cache_note() const;
+
   /// Precision that runs: "int8", "f32" or "bf16".
   const std::string& precision() const;
 

@@ -6,6 +6,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <openvino/pass/serialize.hpp>
+#include <sstream>
+#include <streambuf>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include "core/error.h"
 #include "features/data_directory.h"
@@ -48,6 +54,57 @@ Precision choose_precision(const ModelManifest& manifest, const ExtractorOptions
   return {false, bf16, bf16 ? "bf16" : "f32"};
 }
 
+/// A stream that keeps only a hash of what is written to it.
+class HashingBuffer final : public std::streambuf {
+ public:
+  HashingBuffer() { XXH3_128bits_reset(state_.get()); }
+  XXH128_hash_t digest() const { return XXH3_128bits_digest(state_.get()); }
+
+ protected:
+  std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+    XXH3_128bits_update(state_.get(), bytes, static_cast<std::size_t>(count));
+    count_ += count;
+    return count;
+  }
+  int_type overflow(int_type c) override {
+    const char byte = traits_type::to_char_type(c);
+    xsputn(&byte, 1);
+    return traits_type::not_eof(c);
+  }
+  pos_type seekoff(off_type, std::ios_base::seekdir, std::ios_base::openmode) override {
+    return count_;  // asked for to know where something was written
+  }
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+  };
+  std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
+  std::streamoff count_ = 0;
+};
+
+/// All that a compiled model depends on: graph and weights, arithmetic, OpenVINO, processor. Gives
+/// the nodes of the model other names.
+std::string cache_key(const std::shared_ptr<ov::Model>& model, const ov::Core& core,
+                      const Precision& precision, int threads) {
+  // Some names count how many nodes the process has made before, which is another number each time.
+  int number = 0;
+  for (const auto& node : model->get_ordered_ops()) {
+    node->set_friendly_name(std::to_string(number++));
+  }
+  HashingBuffer graph;
+  HashingBuffer weights;
+  std::ostream graph_stream(&graph);
+  std::ostream weights_stream(&weights);
+  ov::pass::Serialize(graph_stream, weights_stream).run_on_model(model);
+  const XXH128_hash_t g = graph.digest();
+  const XXH128_hash_t w = weights.digest();
+  return fmt::format("{:x} {:x} {:x} {:x} {} {} {} {} {}", g.high64, g.low64, w.high64, w.low64,
+                     precision.name, precision.bf16_allowed, threads,
+                     ov::get_openvino_version().buildNumber,
+                     core.get_property("CPU", ov::device::full_name));
+}
+
 int depth_of(const ov::element::Type& type) {
   if (type == ov::element::u8) return CV_8U;
   if (type == ov::element::i8) return CV_8S;
@@ -67,18 +124,44 @@ ov::element::Type type_of(int depth) {
 ModelCompiler::ModelCompiler(const ModelManifest& manifest, const ExtractorOptions& options)
     : options_(options),
       core_(shared_core()),
-      precision_(choose_precision(manifest, options, *core_)) {}
+      precision_(choose_precision(manifest, options, *core_)),
+      cache_(options.cache_dir == "auto" ? cache_directory() : options.cache_dir) {}
 
-ov::InferRequest ModelCompiler::compile(const std::shared_ptr<ov::Model>& model,
-                                        const std::string& path) const {
+ov::AnyMap ModelCompiler::properties() const {
   ov::AnyMap properties{ov::hint::performance_mode(ov::hint::PerformanceMode::LATENCY),
                         ov::num_streams(1), ov::inference_num_threads(options_.threads)};
   properties.insert(ov::hint::inference_precision(precision_.bf16_allowed ? ov::element::bf16
                                                                           : ov::element::f32));
-  const std::string cache = options_.cache_dir == "auto" ? cache_directory() : options_.cache_dir;
-  if (!cache.empty()) properties.insert(ov::cache_dir(cache));
+  return properties;
+}
+
+std::optional<ov::CompiledModel> ModelCompiler::from_cache(const std::string& key,
+                                                           const ov::AnyMap& properties) const {
+  std::optional<std::string> content = cache_.load(key);
+  if (!content) return std::nullopt;
   try {
-    return core_->compile_model(model, "CPU", properties).create_infer_request();
+    std::istringstream stream(std::move(*content));
+    return core_->import_model(stream, "CPU", properties);
+  } catch (const std::exception&) {  // as another build of OpenVINO wrote it
+    cache_.remove(key);
+    return std::nullopt;
+  }
+}
+
+ov::InferRequest ModelCompiler::compile(const std::shared_ptr<ov::Model>& model,
+                                        const std::string& path) const {
+  const ov::AnyMap settings = properties();
+  try {
+    if (!cache_.usable()) {
+      return core_->compile_model(model, "CPU", settings).create_infer_request();
+    }
+    const std::string key = cache_key(model, *core_, precision_, options_.threads);
+    if (auto compiled = from_cache(key, settings)) return compiled->create_infer_request();
+    ov::CompiledModel compiled = core_->compile_model(model, "CPU", settings);
+    std::ostringstream content;
+    compiled.export_model(content);
+    cache_.store(key, content.str());
+    return compiled.create_infer_request();
   } catch (const ov::Exception& e) {
     throw InputError(fmt::format("{}: cannot be compiled: {}", path, short_reason(e)));
   }

@@ -8,10 +8,12 @@
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <openvino/openvino.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "features/extractor_options.h"
+#include "features/network/model_cache.h"
 #include "features/network/model_manifest.h"
 
 namespace dxslam {
@@ -25,20 +27,27 @@ struct Precision {
   std::string name;  // int8, f32 or bf16
 };
 
-/// Compiles models alike: precision, threads and cache folder. Any number of threads at a time.
+/// Compiles models alike: precision, threads and cache. Any number of threads at a time.
 class ModelCompiler {
  public:
   /// Throws InputError where the manifest has no model of the precision asked for.
   ModelCompiler(const ModelManifest& manifest, const ExtractorOptions& options);
 
   const Precision& precision() const { return precision_; }
+  /// Why compiled models are not kept, if they cannot be; "" otherwise.
+  const std::string& cache_note() const { return cache_.note(); }
   /// `path` is for the message of the InputError thrown if it fails.
   ov::InferRequest compile(const std::shared_ptr<ov::Model>& model, const std::string& path) const;
 
  private:
+  ov::AnyMap properties() const;
+  std::optional<ov::CompiledModel> from_cache(const std::string& key,
+                                              const ov::AnyMap& properties) const;
+
   ExtractorOptions options_;
   std::shared_ptr<ov::Core> core_;
   Precision precision_;
+  ModelCache cache_;
 };
 
 /// Throws InputError if the network fails.
