@@ -56,6 +56,12 @@ EXPECTED = {
     "19-spaces-bom-and-commas": (
         [r"space in a listed name: exit 0", r"quoted: exit 0", r"decimal comma, expected",
          r"decimal comma: exit 3", r"the same with BOM: exit 0"], []),
+    "05-cache-folder-cannot-be-made": (
+        [r"HOME=/proc: exit 0", r"is a file: exit 0", r"no HOME at all: exit 0",
+         r"note: compiled networks are not kept, [^\n]*/proc/\.cache/dxslam"],
+        [r"user nobody: exit [1-9]"]),
+    "20-silent-fallback-to-orb": (
+        [r"exit 3", r"DXSLAM_DATA is /nonexistent, [^\n]*/nonexistent/models/hfnet"], []),
 }
 
 # A crash, an internal error, or a death by a signal (128 + its number).

@@ -2,8 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "apps/system_setup.h"
 
-#include <iostream>
-
+#include "apps/console.h"
 #include "features/extractor_factory.h"
 #include "io/formats/options_yaml.h"
 
@@ -33,7 +32,7 @@ std::vector<std::string> feature_notes(const SystemOptions& options,
 }
 
 void tell_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) std::cerr << "dxslam: note: " + note + "\n";
+  for (const std::string& note : notes) warn_text("note: " + note);
 }
 
 }  // namespace dxslam::apps
