@@ -9,8 +9,10 @@
 #include <new>
 #include <vector>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include "core/error.h"
-#include "vocabulary/checksum.h"
 #include "vocabulary/vocabulary_tree.h"
 
 namespace dxslam {
@@ -18,8 +20,9 @@ namespace {
 
 constexpr std::uint64_t kMagic = 55824124;
 constexpr std::size_t kNameBytes = 50;
-constexpr std::size_t kHeaderBytes = 128;                     // magic and parameters
-constexpr std::uint64_t kChecksumMagic = 0x31304d55534c5844;  // "DXLSUM01"
+constexpr std::size_t kHeaderBytes = 128;                        // magic and parameters
+constexpr std::uint64_t kChecksumMagic = 0x32304d55534c5844;     // "DXLSUM02"
+constexpr std::uint64_t kOldChecksumMagic = 0x31304d55534c5844;  // "DXLSUM01", no longer verified
 constexpr std::size_t kChecksumBytes = 16;
 constexpr std::int32_t kTypeBytes = 0;  // OpenCV's CV_8UC1
 constexpr std::int32_t kTypeFloat = 5;  // and CV_32FC1
@@ -130,11 +133,13 @@ void check_end(FbowImage& image, const std::string& where) {
   const std::size_t end = kHeaderBytes + image.layout.blocks * image.layout.block_step;
   const std::size_t rest = image.file.size() - end;
   if (rest == 0) return;
-  if (rest != kChecksumBytes || get<std::uint64_t>(image.file, end) != kChecksumMagic) {
+  const auto magic = rest == kChecksumBytes ? get<std::uint64_t>(image.file, end) : 0;
+  if (magic == kOldChecksumMagic) return;
+  if (magic != kChecksumMagic) {
     refuse(where, fmt::format("has {} bytes behind its {} blocks, expected none or a checksum",
                               rest, image.layout.blocks));
   }
-  if (get<std::uint64_t>(image.file, end + 8) != fast_checksum(image.file.substr(0, end))) {
+  if (get<std::uint64_t>(image.file, end + 8) != XXH3_64bits(image.file.data(), end)) {
     refuse(where, "does not have the checksum it was written with, the file is damaged");
   }
   image.has_checksum = true;
@@ -318,7 +323,7 @@ std::shared_ptr<const FbowImage> pack_tree(const VocabularyTree& tree) {
   }
   const std::string_view file(reinterpret_cast<const char*>(bytes.get()), end + kChecksumBytes);
   put(bytes.get(), end, kChecksumMagic);
-  put(bytes.get(), end + 8, fast_checksum(file.substr(0, end)));
+  put(bytes.get(), end + 8, XXH3_64bits(file.data(), end));
   return parse_fbow(file, bytes, "vocabulary in memory");
 }
 

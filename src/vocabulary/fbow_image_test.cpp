@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"Longer", [](std::string& b) { b += "xyz"; }, "3 bytes behind its 2 blocks"},
         Damage{"WrongChecksum",
                [](std::string& b) {
-                 b += "DXLSUM01";
+                 b += "DXLSUM02";
                  b += "12345678";
                },
                "checksum"},

@@ -7,14 +7,16 @@
 #include <cstring>
 #include <string_view>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include "core/error.h"
-#include "vocabulary/checksum.h"
 #include "vocabulary/mapped_file.h"
 
 namespace dxslam {
 namespace {
 
-constexpr std::string_view kSignature = "dxslam vocabulary training 1\n";
+constexpr std::string_view kSignature = "dxslam vocabulary training 2\n";
 constexpr std::size_t kChecksumBytes = 8;
 
 class Writer {
@@ -108,7 +110,7 @@ std::string format_checkpoint(const TrainingCheckpoint& state) {
   writer.number(state.sample_offered);
   writer.number(state.sample.size());
   for (const cv::Mat& image : state.sample) writer.matrix(image);
-  writer.number(fast_checksum(writer.bytes));
+  writer.number(XXH3_64bits(writer.bytes.data(), writer.bytes.size()));
   return std::move(writer.bytes);
 }
 
@@ -122,7 +124,7 @@ TrainingCheckpoint read_checkpoint(const std::string& path, int type, int dimens
   const std::string_view content = bytes.substr(0, bytes.size() - kChecksumBytes);
   std::uint64_t sum = 0;
   std::memcpy(&sum, bytes.data() + content.size(), kChecksumBytes);
-  if (sum != fast_checksum(content)) {
+  if (sum != XXH3_64bits(content.data(), content.size())) {
     throw InputError(fmt::format("{}: does not have the checksum it was written with", path));
   }
   Reader reader(content.substr(kSignature.size()), path);
