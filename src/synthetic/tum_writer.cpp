@@ -9,6 +9,8 @@
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -45,13 +47,44 @@ class JsonVisitor {
   nlohmann::ordered_json json;
 };
 
+constexpr const char* kScene = "scene.json";
+
+// Whether the folder has the scene.json that write_tum_sequence() makes first of all.
+bool is_made_here(const fs::path& folder) {
+  std::ifstream file(folder / kScene, std::ios::binary);
+  const auto scene = nlohmann::json::parse(file, nullptr, false);
+  return scene.is_object() && scene.contains("options") && scene.contains("path_length_m") &&
+         scene["options"].is_object() && scene["options"].contains("scene");
+}
+
+// As write_frame() names them.
+bool is_image_name(const std::string& name) {
+  static const std::regex kImage(R"(\d+\.\d{6}\.(png|jpg))");
+  return std::regex_match(name, kImage);
+}
+
+// A file in the folders of images that was not drawn here; empty if there is none.
+std::string foreign_image(const fs::path& folder) {
+  for (const char* images : {"rgb", "depth"}) {
+    std::error_code error;
+    for (fs::directory_iterator it(folder / images, error), end; !error && it != end;
+         it.increment(error)) {
+      const fs::path& path = it->path();
+      const bool ours = is_image_name(path.filename().string()) &&
+                        fs::symlink_status(path, error).type() == fs::file_type::regular;
+      if (!ours) return (fs::path(images) / path.filename()).string();
+    }
+  }
+  return {};
+}
+
 void prepare_folder(const fs::path& folder, bool overwrite) {
   require_usable_folder(folder.string(), overwrite);
   std::error_code error;
-  if (fs::is_directory(folder, error)) {
-    // Only what this function writes; anything else in the folder stays.
-    for (const char* name : {"rgb.txt", "depth.txt", "groundtruth.txt", "calibration.yaml",
-                             "scene.json", "rgb", "depth"}) {
+  // Only what is written here; anything else in the folder stays. The mark goes last.
+  if (is_made_here(folder)) {
+    for (const char* name :
+         {"rgb.txt", "depth.txt", "groundtruth.txt", "calibration.yaml", "rgb", "depth", kScene}) {
       fs::remove_all(folder / name, error);
     }
   }
@@ -77,10 +110,11 @@ void write_image(const fs::path& path, const cv::Mat& image) {
   }
 }
 
-std::string list_of(const SyntheticSequence& sequence, const std::string& folder,
-                    const std::string& type) {
+std::string list_of(const SyntheticSequence& sequence, const std::vector<char>& drawn,
+                    const std::string& folder, const std::string& type) {
   std::string text = fmt::format("# {} images, stamp in seconds and file\n", folder);
   for (std::size_t i = 0; i < sequence.size(); ++i) {
+    if (drawn[i] == 0) continue;
     const double stamp = sequence.stamp(i);
     text += fmt::format("{0:.6f} {1}/{0:.6f}.{2}\n", stamp, folder, type);
   }
@@ -104,11 +138,23 @@ void require_usable_folder(const std::string& folder, bool overwrite) {
   if (!fs::is_directory(folder, error)) {
     throw InputError(fmt::format("'{}' is a file, expected a folder to write to", folder));
   }
-  if (!overwrite && !fs::is_empty(folder, error)) {
+  if (fs::is_empty(folder, error)) return;
+  if (!overwrite) {
     throw InputError(
         fmt::format("folder '{}' is not empty, expected a new or empty one (--force "
                     "replaces an earlier recording)",
                     folder));
+  }
+  if (!is_made_here(folder)) {
+    throw InputError(
+        fmt::format("folder '{}' holds other files, expected a new or empty one, or a recording "
+                    "with the {} that synth wrote",
+                    folder, kScene));
+  }
+  if (const std::string foreign = foreign_image(folder); !foreign.empty()) {
+    throw InputError(
+        fmt::format("folder '{}' holds {}, which synth did not draw, expected only its own images",
+                    folder, foreign));
   }
 }
 
@@ -131,6 +177,9 @@ bool write_tum_sequence(const SyntheticSequence& sequence, const std::string& fo
   const fs::path root(folder);
   prepare_folder(root, options.overwrite);
   const std::string type = options.png ? "png" : "jpg";
+  const auto path = [&](const char* name) { return (root / name).string(); };
+  write_file_atomically(path(kScene), describe_scene(sequence));
+  std::vector<char> drawn(sequence.size(), 0);
   std::atomic<bool> stop{false};
   std::mutex mutex;
   std::size_t done = 0;
@@ -139,17 +188,16 @@ bool write_tum_sequence(const SyntheticSequence& sequence, const std::string& fo
     write_frame(sequence.draw(i, 1), root, sequence.camera().depth_factor, type);
     const std::lock_guard lock(mutex);
     ++done;
+    drawn[i] = 1;
     if (options.progress && !options.progress(done, sequence.size())) stop = true;
   });
-  if (done < sequence.size()) return false;
-  const auto path = [&](const char* name) { return (root / name).string(); };
+  if (done == 0) return false;
   write_file_atomically(path("calibration.yaml"),
                         dump_camera(sequence.camera(), "synthetic camera"));
-  write_file_atomically(path("scene.json"), describe_scene(sequence));
   write_trajectory(path("groundtruth.txt"), sequence.ground_truth());
-  write_file_atomically(path("depth.txt"), list_of(sequence, "depth", "png"));
-  write_file_atomically(path("rgb.txt"), list_of(sequence, "rgb", type));
-  return true;
+  write_file_atomically(path("depth.txt"), list_of(sequence, drawn, "depth", "png"));
+  write_file_atomically(path("rgb.txt"), list_of(sequence, drawn, "rgb", type));
+  return done == sequence.size();
 }
 
 }  // namespace dxslam

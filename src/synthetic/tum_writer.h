@@ -21,9 +21,10 @@ struct TumWriterOptions {
 
 /// Writes a TUM RGB-D folder: rgb/ and depth/ (16-bit PNG), rgb.txt, depth.txt, groundtruth.txt,
 /// and beside them calibration.yaml (the camera) and scene.json (options, seed, path length,
-/// frames). Creates the folder. The lists are written last, so a folder with them is complete.
-/// Returns false if progress stopped it. Throws InputError if the folder has files in it and
-/// overwrite is off, or if a file cannot be written.
+/// frames), by which the folder is known as one of its own. Creates the folder. The lists are
+/// written last; they hold the frames drawn, which are not all where progress stopped it: then it
+/// returns false. Throws InputError if the folder has files in it and overwrite is off or they are
+/// not of this function, or if a file cannot be written.
 bool write_tum_sequence(const SyntheticSequence& sequence, const std::string& folder,
                         const TumWriterOptions& options);
 

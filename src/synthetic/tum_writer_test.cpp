@@ -81,12 +81,33 @@ TEST_F(TumWriter, RefusesAFolderWithContentUnlessAskedToReplaceIt) {
   EXPECT_THROW(require_usable_folder((folder_ / "notes.md").string(), true), InputError);
   TumWriterOptions writer;
   writer.overwrite = true;
+  EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), writer), InputError);
+  fs::remove(folder_ / "notes.md");
+  ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), writer));
+  std::ofstream(folder_ / "notes.md") << "mine";
   ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), writer));
   EXPECT_TRUE(fs::exists(folder_ / "notes.md"));
   EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
 }
 
-TEST_F(TumWriter, StopsWhenToldAndLeavesNoLists) {
+TEST_F(TumWriter, EmptiesNoFolderOfOthers) {
+  SyntheticSequence& sequence = *sequence_;
+  ASSERT_TRUE(write_tum_sequence(sequence, folder_.string(), {}));
+  TumWriterOptions writer;
+  writer.overwrite = true;
+  std::ofstream(folder_ / "rgb" / "mine.png") << "mine";
+  EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), writer), InputError);
+  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
+  fs::remove(folder_ / "rgb" / "mine.png");
+  // As a camera would have made it.
+  std::ofstream(folder_ / "scene.json") << "{}";
+  EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), writer), InputError);
+  fs::remove(folder_ / "scene.json");
+  EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), writer), InputError);
+  EXPECT_EQ(open_sequence(folder_.string())->size(), sequence.size());
+}
+
+TEST_F(TumWriter, StopsWhenToldAndListsWhatWasDrawn) {
   SyntheticSequence& sequence = *sequence_;
   TumWriterOptions writer;
   writer.threads = 1;
@@ -98,7 +119,7 @@ TEST_F(TumWriter, StopsWhenToldAndLeavesNoLists) {
   };
   EXPECT_FALSE(write_tum_sequence(sequence, folder_.string(), writer));
   EXPECT_EQ(calls, 2U);
-  EXPECT_FALSE(fs::exists(folder_ / "rgb.txt"));
+  EXPECT_EQ(open_sequence(folder_.string())->size(), 2U);
   EXPECT_THROW(write_tum_sequence(sequence, "/proc/nowhere", {}), InputError);
 }
 

@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/usage.h"
 #include "synthetic/tum_writer.h"
@@ -44,9 +45,10 @@ void run_synth(SynthArguments& arguments) {
   Progress progress("frames", sequence.size());
   writer.progress = [&progress](std::size_t done, std::size_t) {
     progress.update(done, "drawing");
-    return true;
+    return !stop_requested();
   };
-  write_tum_sequence(sequence, arguments.out, writer);
+  const Unsaved unsaved;
+  if (!write_tum_sequence(sequence, arguments.out, writer)) return;
   progress.finish();
   print("{} frames, {:.1f} m, in {}\n", sequence.size(), sequence.path_length(), arguments.out);
 }
