@@ -14,6 +14,8 @@
 
 #include "apps/console.h"
 #include "apps/open_recording.h"
+#include "apps/process.h"
+#include "apps/stoppable_sequence.h"
 #include "core/error.h"
 #include "io/primitives/image_file.h"
 #include "io/primitives/image_listing.h"
@@ -96,6 +98,7 @@ cv::Mat ImageStream::read_photo(const std::string& path) {
 cv::Mat ImageStream::read_frame(RgbdSequence& sequence, std::size_t index) {
   const std::optional<RgbdImage> frame = sequence.read(index);
   if (frame) return frame->color;
+  if (stop_requested()) return {};
   skip(sequence.skipped().back().reason);
   return {};
 }
@@ -104,13 +107,13 @@ void ImageStream::visit(std::size_t start,
                         const std::function<bool(std::size_t, const Item&)>& visit) {
   std::unique_ptr<RgbdSequence> sequence;
   std::size_t open_source = folders_.size();
-  for (std::size_t i = start; i < images_.size(); ++i) {
+  for (std::size_t i = start; i < images_.size() && !stop_requested(); ++i) {
     const Image& image = images_[i];
     Item item;
     item.photo = !image.photo.empty();
     item.first = item.photo || i == 0 || images_[i - 1].source != image.source;
     if (!item.photo && image.source != open_source) {
-      sequence = open_sequence(folders_[image.source]);
+      sequence = stoppable(open_sequence(folders_[image.source]));
       open_source = image.source;
     }
     item.image = item.photo ? read_photo(image.photo) : read_frame(*sequence, image.index);

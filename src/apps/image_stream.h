@@ -30,8 +30,9 @@ class ImageStream {
 
   std::size_t size() const { return images_.size(); }
 
-  /// Calls `visit(index, item)` for the images from `start` on, until it returns false. Images that
-  /// cannot be read are left out and counted. Throws InputError as the readers do.
+  /// Calls `visit(index, item)` for the images from `start` on, until it returns false, or until a
+  /// stop (process.h). Images that cannot be read are left out and counted. Throws InputError as
+  /// the readers do.
   void visit(std::size_t start, const std::function<bool(std::size_t, const Item&)>& visit);
   std::size_t skipped() const { return skipped_; }
   /// Why the first of the skipped images was skipped.

@@ -10,6 +10,7 @@
 #include <memory>
 #include <unordered_map>
 
+#include "apps/process.h"
 #include "core/error.h"
 #include "features/data_directory.h"
 #include "features/extractor_factory.h"
@@ -219,6 +220,7 @@ LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& s
   for (std::size_t k = 0; k < total; ++k) {
     const std::size_t i = k * settings.stride;
     std::optional<RgbdImage> image = sequence.read(i);
+    if (stop_requested()) break;
     progress(k + 1, total);
     if (!image) continue;
     if (settings.low_light_from && i >= *settings.low_light_from) {

@@ -62,7 +62,8 @@ struct LoopExperiment {
 
 /// Asks every detector for every image, then makes the image a place. Views less than
 /// `poses.window` seconds old are never found. Images that cannot be read are left out.
-/// `progress(done, total)` is called after each image.
+/// `progress(done, total)` is called after each image. Ends early at a stop
+/// (process.h).
 LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& sequence,
                                    const std::function<void(std::size_t, std::size_t)>& progress);
 

@@ -10,6 +10,7 @@
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/process.h"
 #include "apps/system_setup.h"
 #include "apps/usage.h"
 #include "core/error.h"
@@ -64,6 +65,7 @@ void extract(const ExtractArguments& arguments) {
   const auto extractor = make_extractor(arguments.extractor);
   if (!arguments.npz.empty()) make_folder(arguments.npz);
   for (const std::string& path : arguments.images) {
+    if (stop_requested()) return;
     const cv::Mat image = read_image(path, arguments.low_light);
     const Features features = extractor->extract(image, true);
     double total = 0.0;

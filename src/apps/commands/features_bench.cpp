@@ -12,6 +12,7 @@
 #include "apps/console.h"
 #include "apps/features_arguments.h"
 #include "apps/open_recording.h"
+#include "apps/process.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "features/extractor_factory.h"
@@ -107,19 +108,22 @@ void run_once(Contestant& contestant, const cv::Mat& frame, bool counts) {
   }
 }
 
-/// Frame by frame through all contestants, each frame beginning with another one, so that whatever
-/// else the machine does meets all alike.
-void run_interleaved(const std::vector<cv::Mat>& frames, std::vector<Contestant>& contestants) {
+/// Frame by frame, until the stop, through all contestants, each frame beginning with another one,
+/// so that whatever else the machine does meets all alike. Returns the frames done.
+std::size_t run_interleaved(const std::vector<cv::Mat>& frames,
+                            std::vector<Contestant>& contestants) {
   for (Contestant& contestant : contestants) {
-    for (std::size_t i = 0; i < kWarmUp; ++i) {
+    for (std::size_t i = 0; i < kWarmUp && !stop_requested(); ++i) {
       run_once(contestant, frames[i % frames.size()], false);
     }
   }
-  for (std::size_t f = 0; f < frames.size(); ++f) {
+  std::size_t done = 0;
+  for (; done < frames.size() && !stop_requested(); ++done) {
     for (std::size_t c = 0; c < contestants.size(); ++c) {
-      run_once(contestants[(f + c) % contestants.size()], frames[f], true);
+      run_once(contestants[(done + c) % contestants.size()], frames[done], true);
     }
   }
+  return done;
 }
 
 void print_table(const std::vector<Contestant>& contestants, std::size_t frames, int threads) {
@@ -161,8 +165,10 @@ void bench(const BenchArguments& arguments) {
   cv::setNumThreads(arguments.options.threads);
   const auto frames = read_frames(arguments);
   auto contestants = make_contestants(arguments);
-  run_interleaved(frames, contestants);
-  print_table(contestants, frames.size(), arguments.options.threads);
+  const Unsaved unsaved;
+  const std::size_t done = run_interleaved(frames, contestants);
+  if (done == 0) return;
+  print_table(contestants, done, arguments.options.threads);
   if (!arguments.json.empty()) {
     write_file_atomically(arguments.json,
                           to_json_text(to_json(contestants, arguments.options.threads)));

@@ -10,7 +10,9 @@
 #include "apps/loop_experiment.h"
 #include "apps/loops_output.h"
 #include "apps/open_recording.h"
+#include "apps/process.h"
 #include "apps/progress.h"
+#include "apps/stoppable_sequence.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "core/options.h"
@@ -51,7 +53,8 @@ void find_loops(const LoopsArguments& arguments) {
   reader.format = settings.format;
   reader.eye = settings.eye;
   reader.needs_calibration = false;
-  const std::unique_ptr<RgbdSequence> sequence = open_recording(settings.sequence, reader);
+  const std::unique_ptr<RgbdSequence> sequence =
+      stoppable(open_recording(settings.sequence, reader));
   if (settings.truth == "poses" && sequence->ground_truth().empty()) {
     const std::string& problem = sequence->facts().truth_problem;
     throw InputError(
@@ -67,11 +70,13 @@ void find_loops(const LoopsArguments& arguments) {
   if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
   std::optional<ResultFolder> folder;  // before anything costs time
   if (!settings.out.empty()) folder.emplace(settings.out, loop_result_files());
+  std::optional<Unsaved> unsaved(std::in_place);
   Progress progress("images", sequence->size());
   const LoopExperiment experiment = run_loop_experiment(
       settings, *sequence,
       [&](std::size_t done, std::size_t) { progress.update(done, "finding loops"); });
   progress.finish();
+  if (experiment.queries.empty() && stop_requested()) return;
   if (experiment.queries.empty()) {
     throw InputError(fmt::format("{}: no image to ask for, expected some{}", settings.sequence,
                                  settings.second_pass_from ? " in the second pass" : ""));
@@ -82,6 +87,7 @@ void find_loops(const LoopsArguments& arguments) {
   if (folder) {
     write_loop_results(steps, *folder, settings, experiment, *truth, curves, sequence->name());
   }
+  unsaved.reset();
   print_table(experiment, curves);
   if (!sequence->skipped().empty()) {
     const SkippedFrame& first = sequence->skipped().front();

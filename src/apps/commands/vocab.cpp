@@ -88,8 +88,13 @@ int train(const TrainArguments& arguments) {
   VocabularyTrainer trainer(extractor->traits(), arguments.options);
   ImageStream stream(arguments.sources, arguments.stride);
   const std::string source = describe_training(arguments, extractor->name());
+  std::optional<Unsaved> unsaved;
+  if (!arguments.checkpoint.empty()) unsaved.emplace();
   if (!add_images(arguments, stream, *extractor, trainer, source)) return kInterrupted;
 
+  // The tree is made at one go; from the checkpoint it can be made again.
+  if (!arguments.checkpoint.empty()) trainer.save(arguments.checkpoint, source, stream.size());
+  unsaved.reset();
   Progress progress("tree", 1000);
   const Vocabulary vocabulary = trainer.finish(
       fmt::format("{} {}", extractor->name(), arguments.options.method), [&](double share) {
@@ -97,7 +102,8 @@ int train(const TrainArguments& arguments) {
       });
   progress.finish();
   vocabulary.save(arguments.out);
-  if (!arguments.checkpoint.empty()) fs::remove(arguments.checkpoint);
+  std::error_code ignored;
+  if (!arguments.checkpoint.empty()) fs::remove(arguments.checkpoint, ignored);
   const VocabularyInfo info = vocabulary.info();
   print("{}: {} words of {} {} from {} images, {} levels\n", arguments.out, info.words,
         info.dimension, info.binary ? "bytes" : "floats", trainer.images(), info.depth);
