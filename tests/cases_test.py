@@ -10,6 +10,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -56,6 +57,18 @@ EXPECTED = {
     "19-spaces-bom-and-commas": (
         [r"space in a listed name: exit 0", r"quoted: exit 0", r"decimal comma, expected",
          r"decimal comma: exit 3", r"the same with BOM: exit 0"], []),
+    "08-realtime-cannot-be-interrupted": (
+        [r"ended [0-4]\.\d s after Ctrl-C", "trajectory.txt", "summary.json"], ["still asleep"]),
+    "12-signals-that-save-nothing": (
+        [rf"{command} exit 5 " for command in ("run, SIGINT", "run, SIGHUP", "lifelong, SIGINT",
+                                               "relocalize, SIGINT", "synth, SIGINT")]
+        + ["map of lifelong: True", "stopped before its first frame: exit 5"], []),
+    "17-numbers-on-the-command-line": (
+        ["--max-frames -1: exit 2", "'-1' is no whole number", "'rnu' is no command", "run[?]",
+         "a mistyped command: exit 2", r"--out '' \(an unset variable\): exit 2"], ["0{20}"]),
+    "18-output-that-cannot-be-written": (
+        ["eval ate > /dev/full: exit 3", "config dump > /dev/full: exit 3",
+         "stdout cannot be written: No space left"], ["internal"]),
     "05-cache-folder-cannot-be-made": (
         [r"HOME=/proc: exit 0", r"is a file: exit 0", r"no HOME at all: exit 0",
          r"note: compiled networks are not kept, [^\n]*/proc/\.cache/dxslam"],
@@ -94,6 +107,61 @@ def add_test(name):
 
 for _name in report_names():
     add_test(_name)
+
+
+class Files(unittest.TestCase):
+    """The files of $DXSLAM_SHARED/cases: each is refused in one sentence, and soon."""
+
+    def refuse(self, name, *words, seconds=20):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([PROGRAM, *map(str, words)], stdin=subprocess.DEVNULL, cwd=folder,
+                                  capture_output=True, text=True, timeout=seconds)
+            self.assertEqual(done.returncode, 3, (words, done.stderr))
+            said = [line for line in done.stderr.splitlines() if line.startswith("dxslam: ")]
+            self.assertEqual(len(said), 1, done.stderr)
+            self.assertIn(name, said[0])
+            self.assertEqual(os.listdir(folder), [], words)
+
+    def refuse_map(self, name):
+        file = SHARED / "cases" / name
+        if not file.exists():
+            self.skipTest(f"{file} is not there")
+        with tempfile.TemporaryDirectory() as folder:
+            recording = Path(folder) / "recording"
+            subprocess.run([PROGRAM, "synth", recording, "--frames", "5"], check=True,
+                           capture_output=True)
+            self.refuse(name, "map", "check", file)
+            self.refuse(name, "map", "info", file)
+            self.refuse(name, "map", "merge", file, file, "--out", "m.dxmap")
+            self.refuse(name, "map", "export", file, "--ply", "m.ply")
+            self.refuse(name, "relocalize", file, recording)
+            for mode in ("slam", "localization"):
+                self.refuse(name, "run", recording, "--map-in", file, "--mode", mode)
+                self.refuse(name, "lifelong", recording, "--map-in", file, "--mode", mode, "--out",
+                            Path(folder) / mode)
+
+    def test_empty_map(self):
+        self.refuse_map("empty_map.dxmap")
+
+    def test_huge_pose(self):
+        self.refuse_map("huge_pose.dxmap")
+
+    def test_jpeg_scans_bomb(self):
+        file = SHARED / "cases" / "jpeg_scans_bomb.jpg"
+        if not file.exists():
+            self.skipTest(f"{file} is not there")
+        self.refuse(file.name, "features", file, "--features", "orb")
+        # In a recording it is one bad frame.
+        with tempfile.TemporaryDirectory() as folder:
+            recording = Path(folder) / "recording"
+            subprocess.run([PROGRAM, "synth", recording, "--frames", "8"], check=True,
+                           capture_output=True)
+            frame = sorted((recording / "rgb").iterdir())[3]
+            frame.write_bytes(file.read_bytes())
+            done = subprocess.run([PROGRAM, "run", recording, "--features", "orb"], timeout=20,
+                                  stdin=subprocess.DEVNULL, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stderr, f"1 frames? w(as|ere) skipped.*{frame.name}")
 
 
 if __name__ == "__main__":
