@@ -334,8 +334,9 @@ class Signals(Made):
 
     def test_vocabulary(self):
         checkpoint, out = self.folder / "checkpoint", self.folder / "v.fbow"
-        words = ["vocab", "train", self.long, "--features", "orb", "--out", out, "--checkpoint",
-                 checkpoint, "--stride", 2]
+        # Five times the same: long enough to be stopped in the middle of it.
+        words = ["vocab", "train", *[self.long] * 5, "--features", "orb", "--out", out,
+                 "--checkpoint", checkpoint, "--stride", 2]
         process = self.start(*words)
         self.await_work(process, 1.0)
         self.stop(process)
