@@ -30,8 +30,8 @@ void fill_up(const Map& map, std::size_t size, CandidateGroup& group) {
 }  // namespace
 
 std::vector<CandidateGroup> group_by_covisibility(const Map& map,
-                                                 const std::vector<GlobalMatch>& candidates,
-                                                 int min_shared, std::size_t size) {
+                                                  const std::vector<GlobalMatch>& candidates,
+                                                  int min_shared, std::size_t size) {
   std::vector<CandidateGroup> groups;
   std::vector<char> grouped(candidates.size(), 0);
   // What a group gets for a member that it does not have.

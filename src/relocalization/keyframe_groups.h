@@ -22,7 +22,7 @@ struct CandidateGroup {
 /// members are filled up with the best covisible keyframes of their first; of larger ones the
 /// best `size` stay, and the others are in no group. By falling promise.
 std::vector<CandidateGroup> group_by_covisibility(const Map& map,
-                                                 const std::vector<GlobalMatch>& candidates,
-                                                 int min_shared, std::size_t size);
+                                                  const std::vector<GlobalMatch>& candidates,
+                                                  int min_shared, std::size_t size);
 
 }  // namespace dxslam

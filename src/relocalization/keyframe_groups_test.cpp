@@ -49,7 +49,8 @@ TEST_F(KeyframeGroups, ManyGoodCandidatesBeatASingleBestOne) {
 }
 
 TEST_F(KeyframeGroups, ASmallGroupIsFilledUpWithCovisibles) {
-  const std::vector<CandidateGroup> groups = group_by_covisibility(map_, {{first_[3], 0.9F}}, 20, 5);
+  const std::vector<CandidateGroup> groups =
+      group_by_covisibility(map_, {{first_[3], 0.9F}}, 20, 5);
   ASSERT_EQ(groups.size(), 1U);
   ASSERT_EQ(groups[0].keyframes.size(), 5U);
   EXPECT_EQ(groups[0].keyframes.front(), first_[3]);

@@ -24,7 +24,7 @@ struct TrackedFrame {
   SE3 reference_from_camera;
   int keypoints = 0;
   int keypoints_with_depth = 0;  ///< not counted for frames that a map's place was sought for
-  int inliers = 0;  ///< map points that agree with the pose
+  int inliers = 0;               ///< map points that agree with the pose
   bool is_keyframe = false;
   bool recovered = false;   ///< found by descriptors alone, without a predicted pose
   double rms_pixels = 0.0;  ///< of the inliers

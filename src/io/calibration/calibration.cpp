@@ -87,7 +87,8 @@ RgbdCalibration load_calibration(const std::string& name_or_file) {
   if (name_or_file.find_first_of("/.") == std::string::npos) {
     return parse_calibration(camera_preset_text(name_or_file), "preset " + name_or_file);
   }
-  return parse_calibration(read_file(name_or_file, "a camera file (YAML)", limits::kYamlBytes), name_or_file);
+  return parse_calibration(read_file(name_or_file, "a camera file (YAML)", limits::kYamlBytes),
+                           name_or_file);
 }
 
 Camera load_camera(const std::string& name_or_file) {
