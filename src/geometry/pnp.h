@@ -32,7 +32,7 @@ struct PnpOptions {
 
 struct PnpReport {
   SE3 world_from_camera;
-  std::vector<char> inlier;  ///< one a correspondence
+  std::vector<char> inlier;  ///< one per correspondence
   int inliers = 0;
 };
 

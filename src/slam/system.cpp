@@ -167,7 +167,7 @@ TrackedFrame System::track_or_relocalize(const Extracted& extracted, Tracked& tr
     seeking_ = false;
     return *found;
   }
-  if (says_something(*frame)) ++lost_frames_;
+  if (can_begin_map(*frame)) ++lost_frames_;
   if (lost_frames_ >= options_.new_map_after && tracked.mapping) {
     go_on_elsewhere();
     seeking_ = false;
@@ -234,7 +234,7 @@ RelocalizationAnswer System::relocalize(const Frame& frame) {
 }
 
 // A covered lens or a bare wall is no reason to give up a map.
-bool System::says_something(const Frame& frame) const {
+bool System::can_begin_map(const Frame& frame) const {
   const auto with_depth = std::count_if(frame.depths.begin(), frame.depths.end(),
                                         [](float depth) { return depth > 0.0F; });
   return with_depth >= options_.tracking.min_start_points;

@@ -62,9 +62,9 @@ struct MapSize {
 
 /// The whole system (paper, Fig. 1): feature extraction in the caller's thread, tracking, and
 /// mapping with loop closing and relocalization, in threads of their own, joined by bounded queues.
-/// Extracting where images come from leaves the processors to it: read ahead in another thread if
-/// there are processors to spare. In deterministic mode the same steps run one after another in the
-/// caller's thread, and equal input gives equal output to the bit.
+/// Features are extracted in the caller's thread, so a caller with processors to spare should read
+/// its images ahead in a thread of its own. In deterministic mode the same steps run one after
+/// another in the caller's thread, and equal input gives equal output to the bit.
 ///
 /// process(), try_process() and finish() belong to one thread; on_frame is called by the tracking
 /// thread (in deterministic mode by the caller's).
@@ -164,7 +164,7 @@ class System {
   void change_map(const Task& task);
   void map_keyframe(const Tracked& tracked);
   RelocalizationAnswer relocalize(const Frame& frame);
-  bool says_something(const Frame& frame) const;
+  bool can_begin_map(const Frame& frame) const;
   void count(const MappingReport& report);
   void note_map_size();
   KeyframeId reference_of(const TrackedFrame& frame) const;

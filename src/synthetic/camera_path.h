@@ -11,8 +11,8 @@
 namespace dxslam {
 
 struct PathOptions {
-  double speed = 0.0;       // metres a second; 0: the scene's own
-  double turn_rate = 40.0;  // degrees a second
+  double speed = 0.0;       // metres per second; 0: the scene's own
+  double turn_rate = 40.0;  // degrees per second
   double height = 1.35;     // metres
   double pitch = -8.0;      // degrees
   double glance = 14.0;     // degrees

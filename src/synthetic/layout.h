@@ -93,7 +93,7 @@ struct Layout {
   std::vector<Eigen::Vector2d> path;
   double overlap = 1.0;        ///< metres walked again after the loop is closed
   double side_look = 0.0;      ///< radians, how far the camera looks to the left of the path
-  double natural_speed = 0.5;  ///< metres a second
+  double natural_speed = 0.5;  ///< metres per second
 };
 
 /// The names of the scenes: room, office, corridor.

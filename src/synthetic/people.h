@@ -27,7 +27,7 @@ class People {
   struct Walk {
     double time = 0.0;  // when the person is at `middle`
     Eigen::Vector2d middle, direction;
-    double speed = 1.0;                     // metres a second
+    double speed = 1.0;                     // metres per second
     double reach = 3.2;                     // metres before and after the middle
     double size = 1.0;                      // of the body; 1: 1.75 m tall
     int shirt = 0, trousers = 0, face = 0;  // textures

@@ -247,9 +247,9 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
     if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
     OptionalEstimate estimate = optimise(frame, predicted, known);
     if (!estimate) return std::nullopt;
-    // The gate of the pose would not do: in the dark correct matches scatter by more. Nor would a
-    // share of the matches: beside a pose that is wrong, those found fit each other all the same,
-    // but most points find none.
+    // A pose is judged by how many of the points in view agree with it, within a fixed radius.
+    // Counting matches instead would fail: a wrong pose finds few, but these fit each other. The
+    // gate of the optimiser would fail, too: in the dark, correct matches scatter beyond it.
     const SE3& pose = estimate->world_from_camera;
     const int agreeing = count_near(camera_, frame, pose, known, scaled(options_.agreement_radius));
     const int in_view = count_in_view(camera_, pose, last_known);

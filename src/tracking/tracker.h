@@ -62,14 +62,15 @@ class Tracker {
   OptionalEstimate start(const Frame& frame) const;
   /// The frame without the camera's rolling shutter, as far as `velocity` is known.
   FramePtr straightened(const FramePtr& raw, const std::optional<Vector6d>& velocity) const;
-  /// Mean motion a second since the last frame with a pose.
+  /// Mean motion per second since the last frame with a pose.
   std::optional<Vector6d> velocity_at(const Frame& frame, const SE3& world_from_camera) const;
   /// Where constant velocity takes the camera by `stamp`, however many frames lie between. Where
   /// the last frame was, if the clock did not go on.
   SE3 predict(double stamp) const;
   OptionalEstimate track_last_frame(const Frame& frame, const KeypointGrid& grid);
-  /// By the strongest keypoints first, then all around the pixels where these put them. Not tried
-  /// for a while after it failed: the light that made it fail lasts.
+  /// Matches the descriptors of the strongest keypoints, finds the pose from them, and then
+  /// searches for all other points around their predicted pixels. After a failure it is left out
+  /// for some frames, since the light that made it fail lasts.
   OptionalEstimate track_quickly(const Frame& frame, const KeypointGrid& grid);
   /// Matches the last frame's points around the pixels at which a pose puts them. `fair`: the share
   /// of those in view that must agree after the second search.
@@ -105,7 +106,7 @@ class Tracker {
   LocalMapPtr local_;
   TrackingState state_ = TrackingState::kNotStarted;
   LastFrame last_;
-  std::optional<Vector6d> last_velocity_;  // a second, in the last camera's frame
+  std::optional<Vector6d> last_velocity_;  // per second, in the last camera's frame
   int quick_pause_ = 0;                    // frames for which track_quickly is not tried
   SinceKeyframe since_keyframe_;
   SinceKeyframe handed_over_;  // as it was before the last request

@@ -173,7 +173,7 @@ std::string system_name(const std::string& file, const std::string& scene) {
   return stem;
 }
 
-// One row a system; a second file about the same scene gets a row of its own.
+// One row per system; a second file about the same scene gets a row of its own.
 void add_to_picture(std::vector<OpenlorisSystem>& systems, const std::string& file,
                     const OpenlorisReport& report) {
   const std::string name = system_name(file, report.scene);

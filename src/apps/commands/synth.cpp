@@ -67,7 +67,7 @@ void add_synth_command(CLI::App& app) {
   command->add_option("--frames", options.frames, "most frames; 0: the whole path")
       ->check(range_of<SyntheticOptions>("frames"))
       ->capture_default_str();
-  command->add_option("--fps", options.fps, "frames a second")
+  command->add_option("--fps", options.fps, "frames per second")
       ->check(range_of<SyntheticOptions>("fps"))
       ->capture_default_str();
   command->add_option("--seed", options.seed, "place and walk")

@@ -31,7 +31,7 @@ class BriefDescriptor {
   using Pattern = std::array<Test, kBits>;
 
   bool oriented_;
-  std::vector<Pattern> patterns_;  // one a direction
+  std::vector<Pattern> patterns_;  // one per direction
 };
 
 }  // namespace dxslam

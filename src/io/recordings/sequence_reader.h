@@ -43,7 +43,7 @@ const std::vector<std::string>& sequence_formats();
 /// - 7scenes: frame-NNNNNN.{color.png|color.jpg,depth.png,pose.txt}; stamp NNNNNN / 30 s; the depth
 ///   camera is registered to the colour camera.
 /// - folder: images/, optional depth/ (same names, .png), poses.txt (4x4 world_from_camera a row),
-///   K.txt; images in the order of their names; stamp row / fps, 10 frames a second by default.
+///   K.txt; images in the order of their names; stamp row / fps, 10 frames per second by default.
 /// - kitti: a sequence of KITTI odometry: image_0/ and image_1/ (grey) or image_2/ and image_3/
 ///   (colour), times.txt, calib.txt, optional ../../poses/NN.txt or poses.txt (3x4 a row, of camera
 ///   0); no depth.
