@@ -65,7 +65,9 @@ std::size_t share_descriptors(const std::vector<std::shared_ptr<Frame>>& frames,
   int row = 0;
   for (std::size_t i = first; i < end; ++i) {
     const int n = static_cast<int>(frames[i]->size());
-    frames[i]->descriptors = shared.rowRange(row, row + n);
+    // An empty range of rows would forget how wide they are.
+    if (n == 0) frames[i]->descriptors.create(0, traits.dimension, type);
+    if (n > 0) frames[i]->descriptors = shared.rowRange(row, row + n);
     row += n;
   }
   return end;

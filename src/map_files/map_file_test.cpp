@@ -160,7 +160,13 @@ TEST(MapFile, HoldsKeyframesWithoutKeypoints) {
   Map map = sample_map(4);
   map.add_keyframe(std::make_shared<Frame>(), SE3(), 1);
   save_map(folder / "m", take_snapshot(sample_header(), map));
-  expect_consistent(load_map(folder / "m").map);
+  const StoredMap stored = load_map(folder / "m");
+  expect_consistent(stored.map);
+  // As wide as the others: what is copied from them goes into rows of theirs.
+  const Frame& empty = *stored.map.keyframe(stored.map.last_keyframe()).frame;
+  EXPECT_EQ(empty.size(), 0U);
+  EXPECT_EQ(empty.descriptors.cols, stored.header.traits.dimension);
+  EXPECT_EQ(empty.descriptors.type(), CV_32FC1);
 }
 
 TEST(MapFile, MovesLoopsOfRemovedKeyframesToTheirAnchors) {

@@ -22,22 +22,31 @@ inline double place(int index) {
   return t <= 1.0 ? t : 2.0 - t;
 }
 
+// What a made-up recording is like.
+struct RecordingKind {
+  int points = 1200;     // of the scene
+  int frames = kFrames;  // the first of them
+  bool binary = false;   // descriptors of 32 bytes, as ORB's, and no global descriptor
+};
+
 // A recording without images: the colour image holds the index of a frame, by which the extractor
 // finds the keypoints that belong to it.
 class Recording {
  public:
-  Recording() : scene_(1200) {
-    for (int i = 0; i < kFrames; ++i) add(i);
+  explicit Recording(const RecordingKind& kind = {}) : kind_(kind), scene_(kind.points) {
+    for (int i = 0; i < kind.frames; ++i) add(i);
     nothing_.descriptors.create(0, features_.front().descriptors.cols,
                                 features_.front().descriptors.type());
   }
 
   const Camera& camera() const { return scene_.camera(); }
   DescriptorTraits traits() const {
+    if (kind_.binary) return {true, 32, 60.0F, 0};
     DescriptorTraits traits = scene_.traits();
     traits.global_dimension = 2;
     return traits;
   }
+  const std::string& features_name() const { return kind_.binary ? kOrb : kName; }
   const std::vector<RgbdImage>& images() const { return images_; }
   // A negative index is an image that shows nothing.
   const Features& features(const cv::Mat& color) const {
@@ -64,9 +73,13 @@ class Recording {
       // Every other keypoint is without a reading, and may be triangulated.
       if (i % 2 == 0) depth_at(image.depth, p) = frame->depths[i];
     }
-    features.descriptors = frame->descriptors.clone();
-    features.encoder.create(1, 1, CV_32FC1);
-    features.encoder.at<float>(0, 0) = static_cast<float>(place(index));
+    if (kind_.binary) {
+      frame->descriptors.convertTo(features.descriptors, CV_8U, 300.0, 128.0);
+    } else {
+      features.descriptors = frame->descriptors.clone();
+      features.encoder.create(1, 1, CV_32FC1);
+      features.encoder.at<float>(0, 0) = static_cast<float>(place(index));
+    }
     images_.push_back(image);
     features_.push_back(features);
   }
@@ -77,6 +90,10 @@ class Recording {
     return depth.at<float>(within(p.y(), depth.rows), within(p.x(), depth.cols));
   }
 
+  static inline const std::string kName = "recording";
+  static inline const std::string kOrb = "orb";
+
+  RecordingKind kind_;
   PointScene scene_;
   std::vector<RgbdImage> images_;
   std::vector<Features> features_;
@@ -91,23 +108,26 @@ inline const Recording& recording() {
 class RecordingExtractor : public FeatureExtractor {
  public:
   /// `broken`: the image, from 0, that cannot be extracted; `broken_global`: the call of global_of.
-  explicit RecordingExtractor(int broken = -1, int broken_global = -1)
-      : broken_(broken), broken_global_(broken_global) {}
-  const std::string& name() const override { return name_; }
+  /// `made` must outlive this.
+  explicit RecordingExtractor(int broken = -1, int broken_global = -1,
+                              const Recording& made = recording())
+      : made_(made), broken_(broken), broken_global_(broken_global) {}
+  const std::string& name() const override { return made_.features_name(); }
   const DescriptorTraits& traits() const override { return traits_; }
   Features extract(const cv::Mat& image, bool) override {
     if (count_++ == broken_) throw std::runtime_error("broken image");
-    return recording().features(image);
+    return made_.features(image);
   }
   std::vector<float> global_of(const cv::Mat& encoder) override {
     if (globals_++ == broken_global_) throw std::runtime_error("broken encoder");
+    if (encoder.empty()) return {};
     const float angle = encoder.at<float>(0, 0);
     return {std::cos(angle), std::sin(angle)};
   }
 
  private:
-  const std::string name_ = "recording";
-  const DescriptorTraits traits_ = recording().traits();
+  const Recording& made_;
+  const DescriptorTraits traits_ = made_.traits();
   const int broken_;
   const int broken_global_;
   int count_ = 0;
