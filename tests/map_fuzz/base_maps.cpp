@@ -26,9 +26,7 @@ void add_loop(StoredMap& stored) {
   }
 }
 
-}  // namespace
-
-SystemOptions quick_options(const std::string& mode) {
+SystemOptions quick_options(const std::string& mode, bool hasty) {
   SystemOptions options;
   options.mode = mode;
   options.deterministic = true;
@@ -36,8 +34,15 @@ SystemOptions quick_options(const std::string& mode) {
   options.new_map_after = 2;
   options.tracking.min_start_points = 20;
   options.tracking.keyframe.max_translation = 0.02;
+  if (!hasty) return options;
+  for (BundleOptions* bundle :
+       {&options.mapping.bundle, &options.loop_closing.bundle, &options.full_bundle}) {
+    bundle->iterations = bundle->refine_iterations = 2;
+  }
   return options;
 }
+
+}  // namespace
 
 std::vector<RgbdImage> images_of(const Recording& recording, const std::vector<int>& numbers) {
   std::vector<RgbdImage> images;
@@ -55,10 +60,11 @@ std::vector<RgbdImage> images_of(const Recording& recording, const std::vector<i
   return images;
 }
 
-std::unique_ptr<System> make_system(const Recording& recording, const std::string& mode) {
+std::unique_ptr<System> make_system(const Recording& recording, const std::string& mode,
+                                    bool hasty) {
   return std::make_unique<System>(recording.camera(),
                                   std::make_unique<RecordingExtractor>(-1, -1, recording),
-                                  quick_options(mode));
+                                  quick_options(mode, hasty));
 }
 
 BaseMaps::BaseMaps(const std::string& folder) : folder_(folder) {

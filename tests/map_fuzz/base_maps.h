@@ -12,13 +12,13 @@
 
 namespace dxslam::fuzz {
 
-/// Options with which few frames make many keyframes, in one thread.
-SystemOptions quick_options(const std::string& mode);
-
 /// The images of these numbers; a negative number is an image that shows nothing.
 std::vector<RgbdImage> images_of(const Recording& recording, const std::vector<int>& numbers);
 
-std::unique_ptr<System> make_system(const Recording& recording, const std::string& mode);
+/// In one thread, and few frames make many keyframes; `hasty` stops all adjustments after some
+/// steps.
+std::unique_ptr<System> make_system(const Recording& recording, const std::string& mode,
+                                    bool hasty = false);
 
 /// A map that the system made, and the recording that it was made of.
 struct BaseMap {
@@ -40,8 +40,8 @@ class BaseMaps {
   void add(const Recording& recording, const StoredMap& map);
 
   std::string folder_;
-  Recording floats_{RecordingKind{200, 16, false}};
-  Recording bytes_{RecordingKind{200, 16, true}};
+  Recording floats_{RecordingKind{160, 16, false}};
+  Recording bytes_{RecordingKind{160, 16, true}};
   std::vector<BaseMap> maps_;
 };
 
