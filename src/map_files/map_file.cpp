@@ -208,6 +208,9 @@ StoredMap parse_map(const char* bytes, std::size_t size, const std::string& wher
   if (parts.keyframes.empty()) {
     throw InputError(where + ": a map without keyframes, expected at least one");
   }
+  if (!is_possible_covisibility(parts)) {
+    throw InputError(where + ": damaged map file: too many pairs of keyframes share points");
+  }
   std::vector<StoredLoopEdge> loops;
   if (const auto section = sections.optional(kLoopsId)) loops = read_loops(*section, parts);
   std::vector<std::string> thumbnails;

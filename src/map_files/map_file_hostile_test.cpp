@@ -11,8 +11,11 @@
 
 #include "io/primitives/test_folder.h"
 #include "map_files/crc32c.h"
+#include "map_files/map_limits.h"
 #include "map_files/map_merge.h"
+#include "map_files/map_sections.h"
 #include "map_files/map_statistics.h"
+#include "map_files/section_file.h"
 #include "map_files/test_map_files.h"
 
 namespace dxslam {
@@ -216,6 +219,53 @@ TEST(HostileMapFile, CannotAskForMoreMemoryThanItPaysFor) {
       }
     }
   }
+}
+
+// A point that all keyframes see makes every pair of them covisible.
+TEST(HostileMapFile, CannotAskForMorePairsOfKeyframesThanItPaysFor) {
+  auto frame = std::make_shared<Frame>(*sample_snapshot(4).parts.keyframes.front().frame);
+  const auto cut = [](auto& values) { values.resize(1); };
+  cut(frame->pixels);
+  cut(frame->depths);
+  cut(frame->scores);
+  cut(frame->sigmas);
+  frame->descriptors = frame->descriptors.rowRange(0, 1);
+  MapSnapshot snapshot{sample_header(), {}, {}, {}};
+  MapPoint p;
+  p.id = p.created_by = 0;
+  for (KeyframeId id = 0; id < 8000; ++id) {  // 512 MB of pairs
+    Keyframe k;
+    k.id = id;
+    k.frame = frame;
+    k.parent = id == 0 ? kNoId : id - 1;
+    snapshot.parts.keyframes.push_back(k);
+    p.observations.push_back({id, 0});
+  }
+  snapshot.parts.last_keyframe = 0;
+  snapshot.parts.points.push_back(p);
+  EXPECT_FALSE(is_possible_covisibility(snapshot.parts));
+  SectionWriter file(0);
+  write_header(snapshot.header, file);
+  write_keyframes(snapshot.parts, file);
+  write_keypoints(snapshot.parts, snapshot.header.traits, DescriptorCoding::kInt8, file);
+  write_points(snapshot.parts, file);
+  const std::string bytes = file.finish();
+  const MemoryLimit limit(std::size_t{256} << 20);
+  EXPECT_FALSE(survives(bytes));
+  const TestFolder folder;
+  expect_input_error([&] { save_map(folder / "m", snapshot); }, {"pairs of keyframes"});
+
+  // The same keyframes, each sharing its point with some others.
+  snapshot.parts.points.clear();
+  for (KeyframeId id = 0; id < 8000; ++id) {
+    if (id % 100 == 0) {
+      p.observations.clear();
+      p.id = static_cast<PointId>(snapshot.parts.points.size());
+      snapshot.parts.points.push_back(p);
+    }
+    snapshot.parts.points.back().observations.push_back({id, 0});
+  }
+  EXPECT_TRUE(is_possible_covisibility(snapshot.parts));
 }
 
 }  // namespace

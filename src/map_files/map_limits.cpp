@@ -24,6 +24,8 @@ constexpr float kLargestScore = 1e9F;
 constexpr float kSmallestSigma = 1e-3F;  // pixels
 constexpr float kLargestSigma = 1e4F;    // pixels
 constexpr float kLongestDescriptor = 2.0F;
+constexpr std::size_t kFreePairs = std::size_t{1} << 22;  // of covisible keyframes, both directions
+constexpr std::size_t kPairsAnObservation = 64;
 
 // Without early ends, so that it vectorises; false where one is not a number.
 template <class Fits>
@@ -120,6 +122,35 @@ bool are_possible_descriptors(const float* values, std::size_t rows, std::size_t
   return good;
 }
 
+bool is_possible_covisibility(const MapParts& parts) {
+  std::size_t observations = 0;
+  std::size_t most_pairs = 0;  // if no two points were seen by the same two keyframes
+  for (const MapPoint& p : parts.points) {
+    observations += p.observations.size();
+    most_pairs += p.observations.size() * p.observations.size();
+  }
+  const std::size_t limit = kFreePairs + kPairsAnObservation * observations;
+  if (most_pairs <= limit) return true;
+  std::vector<std::vector<std::size_t>> seen(parts.keyframes.size());  // points by keyframe
+  for (std::size_t i = 0; i < parts.points.size(); ++i) {
+    for (const PointObservation& o : parts.points[i].observations) {
+      if (o.keyframe < seen.size()) seen[o.keyframe].push_back(i);
+    }
+  }
+  std::vector<std::size_t> counted_for(seen.size(), seen.size());
+  std::size_t pairs = 0;
+  for (std::size_t k = 0; k < seen.size() && pairs <= limit; ++k) {
+    for (const std::size_t point : seen[k]) {
+      for (const PointObservation& o : parts.points[point].observations) {
+        if (o.keyframe >= seen.size() || counted_for[o.keyframe] == k) continue;
+        counted_for[o.keyframe] = k;
+        ++pairs;
+      }
+    }
+  }
+  return pairs <= limit;
+}
+
 void check_numbers(const MapSnapshot& snapshot, const std::string& where) {
   const auto expect = [&](bool possible, const std::string& what) {
     if (!possible) throw InputError(fmt::format("{}: the map is not saved: {}", where, what));
@@ -135,6 +166,7 @@ void check_numbers(const MapSnapshot& snapshot, const std::string& where) {
   for (const MapPoint& p : snapshot.parts.points) {
     if (!is_possible(p)) expect(false, fmt::format("impossible numbers in point {}", p.id));
   }
+  expect(is_possible_covisibility(snapshot.parts), "too many pairs of keyframes share points");
   for (const StoredLoopEdge& loop : snapshot.loops) {
     expect(is_possible(loop.a_from_b), "a loop edge is no rigid motion");
   }

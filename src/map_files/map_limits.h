@@ -35,6 +35,11 @@ bool are_possible_keypoints(const Frame& frame, const Camera& camera);
 /// `rows` vectors of about unit length or shorter, one behind the other.
 bool are_possible_descriptors(const float* values, std::size_t rows, std::size_t dimension);
 
+/// Whether the keyframes that share points are not far more pairs than the points have
+/// observations: few bytes could ask for any amount of memory. Observations by keyframes that do
+/// not exist are not counted.
+bool is_possible_covisibility(const MapParts& parts);
+
 /// Throws InputError, beginning with `where`, for what load_map would refuse by its numbers: an
 /// empty map, too. Vectors of a frame must be of one length (ContractError).
 void check_numbers(const MapSnapshot& snapshot, const std::string& where);
