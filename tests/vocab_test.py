@@ -73,24 +73,29 @@ class Vocab(Recorded):
         before, after = self.info(self.vocabulary), self.info(back)
         self.assertEqual([before[key] for key in kept], [after[key] for key in kept])
 
-    def interrupt(self, command):
-        """Stops a command on the way, however quick the machine is."""
-        for delay in (0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 5):
+    def interrupt(self, command, state):
+        """Stops a command once it has something to save, however quick the machine is."""
+        early = 0  # stops before that
+        for delay in (0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 5, 10, 20):
             process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             time.sleep(delay)
             process.send_signal(signal.SIGINT)
             process.communicate(timeout=60)
+            if process.returncode == 0:
+                break  # too late
             if process.returncode == INTERRUPTED:
-                return True
-        return False  # too early, and then too late
+                if state.exists():
+                    return True
+                early += 1
+        self.assertEqual(early, 0, "it was stopped, and never left a state")
+        return False
 
     def test_goes_on_after_an_interruption(self):
         whole, out, state = (self.folder / name for name in ("whole.fbow", "resumed.fbow", "state"))
         command = ["vocab", "train", *[self.recording] * 6, "--features", "orb", "--words", 500]
         resumable = [*command, "--out", out, "--checkpoint", state]
-        if not self.interrupt([PROGRAM, *map(str, resumable)]):
+        if not self.interrupt([PROGRAM, *map(str, resumable)], state):
             self.skipTest("no training could be stopped between its start and its end")
-        self.assertTrue(state.exists())
         self.refuse(dxslam(*resumable, "--match-ratio", "0.8"), state)
         done = dxslam(*resumable)
         self.assertEqual(done.returncode, 0, done.stderr)
