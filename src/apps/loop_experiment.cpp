@@ -196,7 +196,7 @@ LoopTruth truth_from_poses(const LoopSettings& settings, const RgbdSequence& seq
 }
 
 // Frames 2k and 2k + 1 are the two views of place k; these two of each other say nothing.
-LoopTruth two_views_a_place(const LoopTruth& places) {
+LoopTruth two_views_per_place(const LoopTruth& places) {
   LoopTruth truth(2 * places.frames());
   for (std::size_t i = 0; i < truth.frames(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -249,7 +249,7 @@ LoopTruth load_loop_truth(const LoopSettings& settings, const RgbdSequence& sequ
     LoopTruth part = every_nth(truth, settings.eye == "right" ? 1 : 0, 2);
     if (part.frames() == frames) return part;
   } else if (frames == 2 * truth.frames()) {
-    return two_views_a_place(truth);
+    return two_views_per_place(truth);
   }
   throw InputError(fmt::format("{}: true loops of {} frames, expected {} as the recording has",
                                settings.truth, truth.frames(), frames));

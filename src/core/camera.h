@@ -34,7 +34,7 @@ struct Camera {
   double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;            ///< pixels
   double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;  ///< dimensionless
   double fps = 30.0;                                        ///< nominal frame rate, 1/s
-  double depth_factor = 1000.0;   ///< raw depth units a metre (16-bit image / factor = metres)
+  double depth_factor = 1000.0;   ///< raw depth units per metre (16-bit image / factor = metres)
   double depth_baseline = 0.075;  ///< metres, between the projector or cameras of the depth sensor
   /// Standard deviation of the depth sensor's disparity, fx * baseline / depth, as a share of that
   /// of a keypoint's pixel. Nearly the same at every distance; 0.12 with a time-of-flight camera,

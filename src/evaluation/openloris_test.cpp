@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A curve in space over `seconds`, ten poses a second.
+// A curve in space over `seconds`, ten poses per second.
 Trajectory curve(double begin, double seconds) {
   Trajectory trajectory;
   for (int i = 0; i <= static_cast<int>(std::lround(10 * seconds)); ++i) {

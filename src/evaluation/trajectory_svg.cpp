@@ -35,7 +35,7 @@ constexpr const char* kEndColor = "#d1372e";
 struct View {
   int axis_x = 0;      // world axis drawn to the right
   int axis_y = 1;      // world axis drawn upwards
-  double scale = 1.0;  // pixels a metre
+  double scale = 1.0;  // pixels per metre
   double x0 = 0.0;     // metres at the left edge of the plot
   double y1 = 0.0;     // metres at its top
   double width = 0.0;  // pixels of the plot

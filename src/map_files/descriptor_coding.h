@@ -11,7 +11,7 @@ namespace dxslam {
 /// How descriptors lie in a file.
 enum class DescriptorCoding : std::uint32_t {
   kBytes = 0,  ///< binary descriptors as they are
-  /// Unit vectors in one signed byte a number: the largest number of a vector becomes 127. The
+  /// Unit vectors in one signed byte per number: the largest number of a vector becomes 127. The
   /// length need not be stored, as it is 1. Coding what was decoded gives the same bytes, so saving
   /// again and again loses nothing more.
   kInt8 = 1,

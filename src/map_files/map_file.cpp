@@ -171,7 +171,7 @@ void require_map_target(const std::string& path) {
 void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFileOptions& options) {
   require(
       snapshot.thumbnails.empty() || snapshot.thumbnails.size() == snapshot.parts.keyframes.size(),
-      "there must be one thumbnail a keyframe, or none at all");
+      "there must be one thumbnail per keyframe, or none at all");
   check_numbers(snapshot, path);
   static_cast<void>(Map(snapshot.parts));  // throws for what could not be loaded again
   const DescriptorTraits& traits = snapshot.header.traits;

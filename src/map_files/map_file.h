@@ -48,7 +48,7 @@ MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
                           const std::vector<std::string>& thumbnails = {});
 
 struct MapFileOptions {
-  /// Float descriptors as they are, four times as large, instead of one byte a number.
+  /// Float descriptors as they are, four times as large, instead of one byte per number.
   bool exact_descriptors = false;
 };
 

@@ -153,7 +153,7 @@ class GraphProblem {
   const std::vector<PoseGraph::Edge>& edges_;
   const std::vector<int>& slots_;  ///< one per node: place among the free ones, or -1
   double huber_;
-  std::vector<Sim3> b_from_a_;  ///< measured, one an edge
+  std::vector<Sim3> b_from_a_;  ///< measured, one per edge
   std::vector<Sim3> state_;     ///< world_from_node
   std::vector<Sim3> trial_;
   SparseBlocks system_;

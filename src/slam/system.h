@@ -123,7 +123,7 @@ class System {
   bool map_is_whole() const { return map_whole_; }
   const Map& map() const { return backend_.map(); }
   const Backend& backend() const { return backend_; }
-  /// One a recording (begin_sequence), in order.
+  /// One per recording (begin_sequence), in order.
   const std::vector<MapSize>& map_sizes() const { return map_sizes_; }
   const MappingTotals& mapping_totals() const { return totals_; }
   const StageTimes& times() const { return times_; }

@@ -26,7 +26,7 @@ struct LastFrame {
 };
 
 /// Known points of a frame: the map point of each keypoint where it has one in the local map,
-/// else the keypoint's own depth. One a keypoint that has either, by rising keypoint.
+/// else the keypoint's own depth. One per keypoint that has either, by rising keypoint.
 std::vector<KnownPoint> known_points(const LastFrame& last, const LocalMap& local,
                                      const Camera& camera);
 

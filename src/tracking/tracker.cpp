@@ -125,7 +125,7 @@ SE3 Tracker::predict(double stamp) const {
 TrackedFrame Tracker::resume(const FramePtr& frame, LocalMapPtr local_map,
                              const SE3& world_from_camera, const std::vector<PointId>& points,
                              std::optional<KeyframeRequest>& request) {
-  require(points.size() == frame->size(), "one point a keypoint is needed to resume tracking");
+  require(points.size() == frame->size(), "one point per keypoint is needed to resume tracking");
   const Tracker before = *this;
   restart();
   local_ = std::move(local_map);

@@ -206,7 +206,7 @@ double worst_position(double readout_time) {
   std::optional<KeyframeRequest> request;
   double worst = 0.0;
   for (int i = 0; i <= 30; ++i) {
-    const double angle = 0.25 * (1.0 - std::cos(0.2 * i));  // up to 86 degrees a second
+    const double angle = 0.25 * (1.0 - std::cos(0.2 * i));  // up to 86 degrees per second
     Vector6d velocity = Vector6d::Zero();
     velocity(4) = 0.25 * 0.2 * 30.0 * std::sin(0.2 * i);
     const SE3 truth(so3_exp({0.0, angle, 0.0}), Eigen::Vector3d::Zero());

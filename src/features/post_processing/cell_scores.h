@@ -9,7 +9,7 @@
 namespace dxslam {
 
 /// Turns a SuperPoint-style detector head (paper III.B) into a map of scores: each cell of
-/// cell x cell pixels has one logit a pixel (channel = row in cell * cell + column in cell) and,
+/// cell x cell pixels has one logit per pixel (channel = row in cell * cell + column in cell) and,
 /// last, one for "no keypoint here"; a softmax over them gives the probabilities. Their logarithms
 /// are kept, which cost nothing more and are what sub-pixel refinement wants. Keeps its buffer
 /// between images; one thread at a time.

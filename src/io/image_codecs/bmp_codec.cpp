@@ -30,9 +30,9 @@ struct Layout {
   std::uint32_t bits = 0;  // of a pixel
   std::size_t palette = 0;
   std::size_t colors = 0;
-  std::size_t bytes_a_color = 4;
+  std::size_t bytes_per_color = 4;
   std::size_t pixels = 0;
-  std::size_t bytes_a_row = 0;
+  std::size_t bytes_per_row = 0;
 };
 
 bool recognises(std::string_view start) {
@@ -73,7 +73,7 @@ Layout parse(std::string_view bytes) {
     layout.width = little_endian16(bytes, kFileHeader + 4);
     layout.height = little_endian16(bytes, kFileHeader + 6);
     layout.bits = little_endian16(bytes, kFileHeader + 10);
-    layout.bytes_a_color = 3;
+    layout.bytes_per_color = 3;
   } else {
     layout.width = little_endian32(bytes, kFileHeader + 4);
     layout.height = little_endian32(bytes, kFileHeader + 8);
@@ -85,17 +85,17 @@ Layout parse(std::string_view bytes) {
   layout.palette = kFileHeader + header;
   layout.pixels = little_endian32(bytes, 10);
   if (layout.bits <= 8 && layout.pixels > layout.palette) {
-    layout.colors = std::min((layout.pixels - layout.palette) / layout.bytes_a_color,
+    layout.colors = std::min((layout.pixels - layout.palette) / layout.bytes_per_color,
                              std::size_t{1} << layout.bits);
   }
-  layout.bytes_a_row = (std::size_t{layout.width} * layout.bits + 31) / 32 * 4;
+  layout.bytes_per_row = (std::size_t{layout.width} * layout.bits + 31) / 32 * 4;
   return layout;
 }
 
 cv::Size_<std::uint32_t> inspect(std::string_view bytes) {
   const Layout layout = parse(bytes);
   const bool too_large = layout.width > limits::kImageSide || layout.height > limits::kImageSide;
-  const std::size_t end = too_large ? 0 : layout.pixels + layout.bytes_a_row * layout.height;
+  const std::size_t end = too_large ? 0 : layout.pixels + layout.bytes_per_row * layout.height;
   if (end > bytes.size()) {
     throw InputError(
         fmt::format("truncated BMP, {} bytes are missing at its end", end - bytes.size()));
@@ -107,7 +107,7 @@ cv::Size_<std::uint32_t> inspect(std::string_view bytes) {
 std::array<cv::Vec3b, 256> read_palette(std::string_view bytes, const Layout& layout) {
   std::array<cv::Vec3b, 256> palette{};
   for (std::size_t i = 0; i < layout.colors; ++i) {
-    const std::size_t at = layout.palette + i * layout.bytes_a_color;
+    const std::size_t at = layout.palette + i * layout.bytes_per_color;
     for (int c = 0; c < 3; ++c) {
       palette[i][c] = static_cast<std::uint8_t>(byte_at(bytes, at + static_cast<std::size_t>(c)));
     }
@@ -147,7 +147,7 @@ cv::Mat decode(std::string_view bytes) {
                 grey ? CV_8UC1 : CV_8UC3);
   for (std::uint32_t y = 0; y < layout.height; ++y) {
     const std::string_view row =
-        bytes.substr(layout.pixels + layout.bytes_a_row * y, layout.bytes_a_row);
+        bytes.substr(layout.pixels + layout.bytes_per_row * y, layout.bytes_per_row);
     std::uint8_t* to = image.ptr(static_cast<int>(layout.top_down ? y : layout.height - 1 - y));
     if (indexed) {
       unpack_indexed(row, layout, palette, grey, to);

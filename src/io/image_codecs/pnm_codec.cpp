@@ -68,14 +68,14 @@ Layout parse(std::string_view bytes) {
   return layout;
 }
 
-std::size_t bytes_a_row(const Layout& layout) {
+std::size_t bytes_per_row(const Layout& layout) {
   return std::size_t{layout.width} * static_cast<std::size_t>(layout.channels) *
          (layout.largest > 255 ? 2 : 1);
 }
 
 cv::Size_<std::uint32_t> inspect(std::string_view bytes) {
   const Layout layout = parse(bytes);
-  const std::size_t end = layout.pixels + bytes_a_row(layout) * layout.height;
+  const std::size_t end = layout.pixels + bytes_per_row(layout) * layout.height;
   const bool too_large = layout.width > limits::kImageSide || layout.height > limits::kImageSide;
   if (!too_large && end > bytes.size()) {
     throw InputError(

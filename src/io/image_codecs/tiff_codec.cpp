@@ -80,12 +80,12 @@ class Directory {
     if (at == 0) return missing;
     const std::uint32_t type = u16(at + 2);
     if (type != 1 && type != 3 && type != 4) damaged("a tag of a type that does not fit");
-    const std::size_t bytes_a_value = type == 1 ? 1 : type == 3 ? 2 : 4;
+    const std::size_t bytes_per_value = type == 1 ? 1 : type == 3 ? 2 : 4;
     const std::size_t values = u32(at + 4);
     if (index >= values) damaged("a list in its directory is too short");
-    const std::size_t begin = values * bytes_a_value <= 4 ? at + 8 : u32(at + 8);
-    const std::size_t place = begin + index * bytes_a_value;
-    if (place + bytes_a_value > bytes_.size()) damaged("a list lies behind its end");
+    const std::size_t begin = values * bytes_per_value <= 4 ? at + 8 : u32(at + 8);
+    const std::size_t place = begin + index * bytes_per_value;
+    if (place + bytes_per_value > bytes_.size()) damaged("a list lies behind its end");
     return type == 1 ? byte_at(bytes_, place) : type == 3 ? u16(place) : u32(place);
   }
 
@@ -126,7 +126,7 @@ struct Layout {
 
   std::size_t blocks_across() const { return (width + block_width - 1) / block_width; }
   std::size_t blocks_down() const { return (height + block_height - 1) / block_height; }
-  std::size_t bytes_a_row() const { return (std::size_t{block_width} * samples * bits + 7) / 8; }
+  std::size_t bytes_per_row() const { return (std::size_t{block_width} * samples * bits + 7) / 8; }
   Tag offsets() const { return tiled ? kTileOffsets : kStripOffsets; }
   Tag sizes() const { return tiled ? kTileBytes : kStripBytes; }
 };
@@ -251,7 +251,7 @@ void to_native_order(std::vector<std::uint8_t>& block, const Layout& layout) {
 void undo_predictor(std::vector<std::uint8_t>& block, const Layout& layout) {
   if (layout.predictor == 1) return;
   std::vector<std::uint8_t> planes;
-  for (std::size_t at = 0; at < block.size(); at += layout.bytes_a_row()) {
+  for (std::size_t at = 0; at < block.size(); at += layout.bytes_per_row()) {
     if (layout.predictor == 3) {
       undo_float_differences(&block[at], layout, planes);
     } else if (layout.bits == 32) {
@@ -305,7 +305,7 @@ void place_block(const std::vector<std::uint8_t>& block, const Layout& layout, s
   const std::size_t pixels = std::min<std::size_t>(layout.block_width, layout.width - left);
   const std::size_t rows = std::min<std::size_t>(layout.block_height, layout.height - top);
   for (std::size_t y = 0; y < rows; ++y) {
-    place_row(&block[y * layout.bytes_a_row()], layout, pixels,
+    place_row(&block[y * layout.bytes_per_row()], layout, pixels,
               image.ptr(static_cast<int>(top + y)) + left * image.elemSize());
   }
 }
@@ -324,7 +324,7 @@ cv::Mat decode(std::string_view bytes) {
     const std::size_t rows = layout.tiled
                                  ? layout.block_height
                                  : std::min<std::size_t>(layout.block_height, layout.height - top);
-    block.resize(rows * layout.bytes_a_row());
+    block.resize(rows * layout.bytes_per_row());
     const std::string_view packed =
         bytes.substr(directory.get(layout.offsets(), 0, i), directory.get(layout.sizes(), 0, i));
     if (!unpack_tiff_block(layout.compression, packed, block)) {

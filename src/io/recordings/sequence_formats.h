@@ -13,7 +13,7 @@
 
 namespace dxslam {
 
-// One function a format, each in a file of its own; `folder` exists. All throw InputError.
+// One function per format, each in a file of its own; `folder` exists. All throw InputError.
 SequenceListing list_tum(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_openloris(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_seven_scenes(const std::string& folder, const SequenceOptions& options);
