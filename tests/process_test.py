@@ -7,6 +7,7 @@ usage: process_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dx
 """
 import json
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -19,7 +20,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
 TIMEOUT = 120
-SUCCESS, BAD_USAGE, BAD_INPUT, TRACKING_FAILED, INTERRUPTED = 0, 2, 3, 4, 5
+SUCCESS, BAD_USAGE, BAD_INPUT, TRACKING_FAILED, INTERRUPTED, INTERNAL_ERROR = 0, 2, 3, 4, 5, 70
 FRAMES = 40
 SECONDS_TO_STOP = 2.0 * 2.5  # the promise, and room for machines busy with other tests
 
@@ -478,6 +479,17 @@ class Permissions(Made):
         self.refuse("run", self.recording, "--features", "orb", "--out", closed)
         self.refuse("run", self.recording, "--features", "orb", "--map-out", closed / "m.dxmap")
         self.refuse("synth", closed / "s")
+
+    def test_few_threads(self):
+        for threads in (1, 3, 12):
+            done = program("synth", self.folder / "s", "--threads", 8, "--frames", 3, "--width", 64,
+                           "--height", 48, "--force", user=65534, group=65534, extra_groups=[], cwd="/",
+                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NPROC,
+                                                                 (threads, threads)))
+            # Libraries of others may need one; but nothing may die of it.
+            self.assertIn(done.returncode, (SUCCESS, INTERNAL_ERROR), done.stderr)
+            if done.returncode:
+                self.assertRegex(done.stderr, "dxslam: internal error: .*Resource temporarily")
 
 
 if __name__ == "__main__":

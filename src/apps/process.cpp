@@ -15,6 +15,7 @@
 
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "core/parallel.h"
 #include "io/primitives/atomic_file.h"
 
 namespace dxslam::apps {
@@ -82,7 +83,11 @@ void watch(const sigset_t& signals) {
   sigwait(&signals, &signal);
   state().stop.request_stop();
   stop_waiting_for_readers();
-  std::thread(end_when_saved).detach();
+  if (std::thread ending = thread_if_possible(end_when_saved); ending.joinable()) {
+    ending.detach();
+  } else {
+    end_when_saved();
+  }
   for (bool said = false;; said = true) {
     sigwait(&signals, &signal);
     if (!said) warn("stopping; Ctrl-\\ (SIGQUIT) ends it at once and saves nothing");
@@ -99,7 +104,12 @@ void prepare_process() {
   const sigset_t signals = stop_signals();
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   state();
-  std::thread(watch, signals).detach();
+  if (std::thread watching = thread_if_possible([signals] { watch(signals); });
+      watching.joinable()) {
+    watching.detach();
+  } else {
+    ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // rather end at once than be deaf
+  }
 }
 
 bool stop_requested() { return state().stop.stop_requested(); }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/process.h"
+#include "core/parallel.h"
 
 namespace dxslam::apps {
 namespace {
@@ -77,7 +78,10 @@ class StoppableSequence : public RgbdSequence {
 
   std::optional<RgbdImage> read(std::size_t index) override {
     if (stop_requested()) return std::nullopt;
-    if (!thread_.joinable()) thread_ = std::thread(read_what_is_asked, reading_);
+    if (!thread_.joinable()) {
+      thread_ = thread_if_possible([reading = reading_] { read_what_is_asked(reading); });
+    }
+    if (!thread_.joinable()) return read_here(index);
     std::unique_lock lock(reading_->mutex);
     reading_->asked = index;
     reading_->answered = false;
@@ -93,6 +97,13 @@ class StoppableSequence : public RgbdSequence {
   }
 
  private:
+  // Without a thread nobody can stop it.
+  std::optional<RgbdImage> read_here(std::size_t index) {
+    std::optional<RgbdImage> image = reading_->recording->read(index);
+    note_skipped();
+    return image;
+  }
+
   // A copy, for an abandoned thread may still add to the recording's own.
   void note_skipped() {
     const std::vector<SkippedFrame>& all = reading_->recording->skipped();

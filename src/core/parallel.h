@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace dxslam {
@@ -17,8 +19,19 @@ inline int helpful_threads() {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
 }
 
+/// A thread that does the work; where the system gives no more threads, one that is not joinable.
+template <class Work>
+std::thread thread_if_possible(const Work& work) {
+  try {
+    return std::thread(work);
+  } catch (const std::system_error&) {
+    return {};
+  }
+}
+
 /// Calls work(i) once for each i below `n`, in no order, by up to `threads` threads, this one among
-/// them, and waits for all. The first exception comes out after all threads have ended.
+/// them, and waits for all; by fewer where the system gives no more threads. The first exception
+/// comes out after all threads have ended.
 template <class Work>
 void in_parallel(std::size_t n, int threads, const Work& work) {
   std::atomic<std::size_t> next{0};
@@ -35,7 +48,12 @@ void in_parallel(std::size_t n, int threads, const Work& work) {
   };
   std::vector<std::thread> helpers;
   const std::size_t wanted = std::min(n, static_cast<std::size_t>(std::max(threads, 1)));
-  for (std::size_t i = 1; i < wanted; ++i) helpers.emplace_back(take_turns);
+  helpers.reserve(wanted);
+  while (helpers.size() + 1 < wanted) {
+    std::thread helper = thread_if_possible(take_turns);
+    if (!helper.joinable()) break;
+    helpers.push_back(std::move(helper));
+  }
   take_turns();
   for (std::thread& helper : helpers) helper.join();
   if (error) std::rethrow_exception(error);

@@ -6,6 +6,8 @@
 
 #include <stdexcept>
 
+#include "core/test_threads.h"
+
 namespace dxslam {
 namespace {
 
@@ -27,6 +29,13 @@ TEST(InParallel, AnExceptionComesOutAndEndsTheWork) {
   };
   EXPECT_THROW(in_parallel(1000000, 2, work), std::runtime_error);
   EXPECT_LT(calls, 1000000);
+}
+
+TEST(InParallel, DoesAllTheWorkWithoutHelpers) {
+  const NoMoreThreads none;
+  std::vector<int> turns(100, 0);
+  in_parallel(turns.size(), 8, [&](std::size_t i) { ++turns[i]; });
+  EXPECT_EQ(turns, std::vector<int>(100, 1));
 }
 
 TEST(ParallelRanges, CoverTheRangeWithoutGapOrOverlap) {

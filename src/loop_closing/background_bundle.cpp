@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.h"
+
 namespace dxslam {
 namespace {
 
@@ -155,11 +157,9 @@ void BackgroundBundle::start(const Map& map, std::uint32_t component) {
   cancel();
   auto job = std::make_unique<Job>();
   job->bundle = gather_component_bundle(map, component, camera_);
-  if (in_line_) {
-    adjust(*job);
-  } else {
-    job->thread = std::thread([this, target = job.get()] { adjust(*target); });
-  }
+  const auto work = [this, target = job.get()] { adjust(*target); };
+  if (!in_line_) job->thread = thread_if_possible(work);
+  if (!job->thread.joinable()) work();
   job_ = std::move(job);
 }
 

@@ -6,6 +6,7 @@
 
 #include <thread>
 
+#include "core/test_threads.h"
 #include "loop_closing/ring_scene.h"
 
 namespace dxslam {
@@ -47,6 +48,16 @@ TEST_F(BackgroundBundleTest, AdjustsTheWholeMap) {
   EXPECT_LT(merge->final_cost, merge->initial_cost);
   EXPECT_LT(walk_.ate(), 0.5 * before);
   EXPECT_EQ(walk_.map.keyframe(0).world_from_camera.translation(), Eigen::Vector3d::Zero());
+}
+
+TEST_F(BackgroundBundleTest, NeedsNoThread) {
+  walk_.walk(0.0, 8.0, 0.25);
+  const double before = walk_.ate();
+  const NoMoreThreads none;
+  BackgroundBundle bundle(scene_.camera(), {10, 10}, false);
+  bundle.start(walk_.map, 0);
+  ASSERT_TRUE(bundle.wait(walk_.map));
+  EXPECT_LT(walk_.ate(), 0.5 * before);
 }
 
 TEST_F(BackgroundBundleTest, CarriesWhatWasMadeMeanwhile) {

@@ -2,7 +2,10 @@
 // Copyright 2026 The dxslam authors
 #include "slam/system.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <system_error>
 
 #include "core/error.h"
 
@@ -34,13 +37,23 @@ System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor
   mapping_ = options_.mode == "slam";
   extractor_->keep_encoder(true);
   if (options_.deterministic) return;
-  threads_.emplace_back([this] { guard([this] { run_tracking(); }); });
-  threads_.emplace_back([this] { guard([this] { run_mapping(); }); });
+  try {
+    threads_.reserve(2);
+    threads_.emplace_back([this] { guard([this] { run_tracking(); }); });
+    threads_.emplace_back([this] { guard([this] { run_mapping(); }); });
+  } catch (const std::system_error& error) {
+    end_threads();
+    throw InputError(fmt::format("no threads for tracking and mapping: {}, expected two more",
+                                 error.code().message()));
+  }
 }
 
-System::~System() {
+System::~System() { end_threads(); }
+
+void System::end_threads() {
   close_queues();
   for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
 }
 
 void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {

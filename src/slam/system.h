@@ -78,7 +78,8 @@ class System {
  public:
   using FrameCallback = std::function<void(const TrackedFrame&)>;
 
-  /// Takes the extractor. Throws InputError for options out of range.
+  /// Takes the extractor. Throws InputError for options out of range, and where the operating
+  /// system gives no threads.
   System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor,
          const SystemOptions& options, FrameCallback on_frame = nullptr);
   ~System();
@@ -175,6 +176,7 @@ class System {
   void call(const std::function<void()>& callback);
   void guard(const std::function<void()>& body);
   void close_queues();
+  void end_threads();
 
   Camera camera_;
   SystemOptions options_;

@@ -9,6 +9,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "core/error.h"
+#include "core/test_threads.h"
 #include "slam/system.h"
 #include "slam/test_recording.h"
 
@@ -71,6 +73,12 @@ TEST(SystemThreads, AreAsAccurateAsOneThread) {
           << i;
     }
   }
+}
+
+TEST(SystemThreads, AreRefusedInOneSentenceWhereThereAreNone) {
+  const NoMoreThreads none;
+  EXPECT_THROW(System(recording().camera(), std::make_unique<RecordingExtractor>(), options(false)),
+               InputError);
 }
 
 TEST(SystemThreads, OneThreadRepeatsItselfToTheBit) {
