@@ -8,6 +8,7 @@ usage: cases_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxsl
 """
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -168,4 +169,5 @@ if __name__ == "__main__":
     if not report_names():
         print(f"skipped: {REPORTS} is not there")
         sys.exit(SKIPPED)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # where a shell has it ignored, programs would, too
     sys.exit(unittest.main())

@@ -486,6 +486,7 @@ class RealRecordings(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # where a shell has it ignored, programs would, too
     program = unittest.main(verbosity=2, exit=False)
     outcome = program.result
     if outcome.testsRun and len(outcome.skipped) == outcome.testsRun:

@@ -141,4 +141,5 @@ class Shipped(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # where a shell has it ignored, programs would, too
     unittest.main(argv=[sys.argv[0], "-v", *sys.argv[1:]])

@@ -49,14 +49,14 @@ void open_console() {
   }
 }
 
+// Whoever started the program may have it ignore some: nohup, or a shell that runs it behind.
 sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  struct sigaction hang_up{};
-  if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) {
-    sigaddset(&signals, SIGHUP);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action{};
+    const bool known = ::sigaction(number, nullptr, &action) == 0;
+    if (!known || action.sa_handler != SIG_IGN) sigaddset(&signals, number);
   }
   return signals;
 }
