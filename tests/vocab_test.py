@@ -6,6 +6,7 @@
 usage: vocab_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
 """
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -115,6 +116,36 @@ class Vocab(Recorded):
         self.refuse(dxslam("vocab", "info", broken), broken, "checksum")
         self.refuse(dxslam("vocab", "convert", ROOT / "LICENSE", broken), "expected a vocabulary")
         self.refuse(dxslam("vocab", "info", self.folder / "none"), "none")
+
+    def test_tries_its_files_before_the_work(self):
+        other = self.folder / "other.txt"
+        other.write_text("not a vocabulary\n")
+        images = ("--words", 500, self.folder / "missing")  # never come to
+        for words in (("train", *images, "--out", other), ("convert", self.folder / "missing", other)):
+            self.refuse(dxslam("vocab", *words), "other.txt: is no vocabulary and is not replaced")
+        self.assertEqual(other.read_text(), "not a vocabulary\n")
+        nowhere = self.folder / "nowhere" / "file"
+        for words in (("--out", nowhere), ("--out", self.folder / "v", "--checkpoint", nowhere)):
+            self.refuse(dxslam("vocab", "train", self.recording, "--features", "orb", *words),
+                        "nowhere/file: cannot be written")
+        both = self.folder / "both"
+        self.refuse(dxslam("vocab", "train", *images, "--out", both, "--checkpoint", self.folder / "." / "both"),
+                    "both: is both --out and --checkpoint")
+        again = self.folder / "again.fbow"
+        again.write_bytes(self.vocabulary.read_bytes()[:100])
+        self.assertEqual(dxslam("vocab", "convert", self.vocabulary, again).returncode, 0)
+
+    def test_a_checkpoint_that_cannot_be_written_ends_nothing(self):
+        # A limit on the size of files stands for a full disk: the vocabulary is smaller.
+        out, limit = self.folder / "unkept.fbow", 200_000
+        words = [PROGRAM, "vocab", "train", *[self.recording] * 9, "--features", "orb", "--words", 500,
+                 "--out", out, "--checkpoint", self.folder / "unkept"]
+        done = subprocess.run(
+            [*map(str, words)], capture_output=True, text=True, timeout=120,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("File too large; the training goes on"), 1, done.stderr)
+        self.assertLess(out.stat().st_size, limit)
 
     def test_refuses_nonsense(self):
         out = self.folder / "none.fbow"

@@ -226,7 +226,27 @@ int depth_of(const VocabularyTree& tree) {
   return *std::max_element(level.begin(), level.end());
 }
 
+// The branching factor.
+int read_head(Lines& lines) {
+  const int branching = lines.number<int>("branching factor", 1, kMaxBranching);
+  lines.number<int>("depth", 1, kMaxDepth);
+  lines.number<int>("scoring", 0, 5);
+  lines.number<int>("weighting", 0, 3);
+  return branching;
+}
+
 }  // namespace
+
+bool is_dbow2_text(std::string_view text) {
+  Lines lines(without_byte_order_mark(text.substr(0, text.find('\n'))), "");
+  try {
+    if (!lines.next()) return false;
+    read_head(lines);
+    return lines.at_end();
+  } catch (const InputError&) {
+    return false;
+  }
+}
 
 VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where) {
   Lines lines(without_byte_order_mark(text), where);
@@ -240,10 +260,7 @@ VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where)
                            in_quotes(head.substr(0, 20))));
   }
   VocabularyTree tree;
-  tree.branching = lines.number<int>("branching factor", 1, kMaxBranching);
-  lines.number<int>("depth", 1, kMaxDepth);
-  lines.number<int>("scoring", 0, 5);
-  lines.number<int>("weighting", 0, 3);
+  tree.branching = read_head(lines);
   tree.nodes.emplace_back();
   std::vector<char> leaf{0};
   Rows rows;

@@ -13,6 +13,9 @@ namespace dxslam {
 // "parent is_leaf d0 d1 ... weight", numbered from 1; words are numbered in the order of their
 // lines. Descriptors are bytes if those of the first node are integers of 0 to 255, else floats.
 
+/// True if the text begins with a line as that of a file of DBoW2.
+bool is_dbow2_text(std::string_view text);
+
 /// Throws InputError with `where` and the line for anything else. Parents come before children.
 VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where);
 

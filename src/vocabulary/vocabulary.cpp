@@ -2,7 +2,10 @@
 // Copyright 2026 The dxslam authors
 #include "vocabulary/vocabulary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
 
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
@@ -49,6 +52,20 @@ Vocabulary Vocabulary::load(const std::string& path) {
 Vocabulary Vocabulary::from_tree(const VocabularyTree& tree) {
   check_tree(tree);
   return Vocabulary(pack_tree(tree));
+}
+
+void Vocabulary::require_target(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) {
+    const MappedFile file(path, "a vocabulary or a new name");
+    const std::string_view bytes(reinterpret_cast<const char*>(file.data()), file.size());
+    // An empty file is what mktemp makes.
+    if (!bytes.empty() && !is_fbow(bytes) && !is_dbow2_text(bytes)) {
+      throw InputError(fmt::format(
+          "{}: is no vocabulary and is not replaced, expected a vocabulary or a new name", path));
+    }
+  }
+  require_writable(path);
 }
 
 void Vocabulary::save(const std::string& path) const { write_file_atomically(path, image_->file); }

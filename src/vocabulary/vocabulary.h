@@ -46,6 +46,10 @@ class Vocabulary {
   /// Throws ContractError for a tree that is none (see vocabulary_tree.h).
   static Vocabulary from_tree(const VocabularyTree& tree);
 
+  /// Throws InputError if nothing could be written to `path`, or if what is there is no vocabulary,
+  /// which a mistyped name must not cost. Changes nothing.
+  static void require_target(const std::string& path);
+
   /// Writes an FBoW file. Throws InputError if it cannot be written.
   void save(const std::string& path) const;
 

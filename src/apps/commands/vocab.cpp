@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "apps/commands.h"
 #include "apps/console.h"
@@ -55,9 +56,40 @@ void add_photo(VocabularyTrainer& trainer, FeatureExtractor& extractor, const cv
   }
 }
 
+// The file for the state of a training, if it is to have one.
+class Checkpoint {
+ public:
+  Checkpoint(const VocabularyTrainer& trainer, std::string path, std::string source)
+      : trainer_(trainer), path_(std::move(path)), source_(std::move(source)) {
+    if (wanted()) require_writable(path_);
+  }
+
+  bool wanted() const { return !path_.empty(); }
+
+  /// Throws InputError if it cannot be written.
+  void save(std::size_t position) const {
+    if (wanted()) trainer_.save(path_, source_, position);
+  }
+
+  /// A failure is said once; the training can do without, and the next save tries again.
+  void try_to_save(std::size_t position) {
+    try {
+      save(position);
+    } catch (const InputError& error) {
+      if (!std::exchange(warned_, true)) warn("{}; the training goes on", error.what());
+    }
+  }
+
+ private:
+  const VocabularyTrainer& trainer_;
+  const std::string path_;
+  const std::string source_;
+  bool warned_ = false;
+};
+
 // Works through the images; false if it was interrupted.
 bool add_images(const TrainArguments& arguments, ImageStream& stream, FeatureExtractor& extractor,
-                VocabularyTrainer& trainer, const std::string& source) {
+                VocabularyTrainer& trainer, const std::string& source, Checkpoint& checkpoint) {
   std::size_t position = 0;
   if (!arguments.checkpoint.empty() && fs::exists(arguments.checkpoint)) {
     position = trainer.load(arguments.checkpoint, source);
@@ -72,28 +104,36 @@ bool add_images(const TrainArguments& arguments, ImageStream& stream, FeatureExt
     }
     position = index + 1;
     progress.update(position, fmt::format("{} words open", trainer.open_words()));
-    if (!arguments.checkpoint.empty() && position % kImagesACheckpoint == 0) {
-      trainer.save(arguments.checkpoint, source, position);
-    }
+    if (position % kImagesACheckpoint == 0) checkpoint.try_to_save(position);
     return !stop_requested();
   });
   progress.finish();
   if (!stop_requested()) return true;
-  if (!arguments.checkpoint.empty()) trainer.save(arguments.checkpoint, source, position);
+  checkpoint.save(position);
   return false;
 }
 
+void require_two_files(const std::string& out, const std::string& checkpoint) {
+  std::error_code ignored;
+  if (fs::weakly_canonical(out, ignored) != fs::weakly_canonical(checkpoint, ignored)) return;
+  throw InputError(
+      fmt::format("{}: is both --out and --checkpoint, expected two different files", out));
+}
+
 int train(const TrainArguments& arguments) {
+  Vocabulary::require_target(arguments.out);
+  if (!arguments.checkpoint.empty()) require_two_files(arguments.out, arguments.checkpoint);
   const std::unique_ptr<FeatureExtractor> extractor = make_extractor(arguments.extractor);
   VocabularyTrainer trainer(extractor->traits(), arguments.options);
   ImageStream stream(arguments.sources, arguments.stride);
   const std::string source = describe_training(arguments, extractor->name());
+  Checkpoint checkpoint(trainer, arguments.checkpoint, source);
   std::optional<Unsaved> unsaved;
-  if (!arguments.checkpoint.empty()) unsaved.emplace();
-  if (!add_images(arguments, stream, *extractor, trainer, source)) return kInterrupted;
+  if (checkpoint.wanted()) unsaved.emplace();
+  if (!add_images(arguments, stream, *extractor, trainer, source, checkpoint)) return kInterrupted;
 
   // The tree is made at one go; from the checkpoint it can be made again.
-  if (!arguments.checkpoint.empty()) trainer.save(arguments.checkpoint, source, stream.size());
+  checkpoint.try_to_save(stream.size());
   unsaved.reset();
   Progress progress("tree", 1000);
   const Vocabulary vocabulary = trainer.finish(
@@ -137,6 +177,7 @@ struct ConvertArguments {
 void convert(const ConvertArguments& arguments) {
   std::string format = arguments.format;
   if (format == "auto") format = fs::path(arguments.out).extension() == ".txt" ? "dbow2" : "fbow";
+  Vocabulary::require_target(arguments.out);
   const Vocabulary vocabulary = Vocabulary::load(arguments.in);
   if (format == "dbow2") {
     write_file_atomically(arguments.out, format_dbow2_text(vocabulary.tree()));
