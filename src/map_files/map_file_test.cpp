@@ -146,6 +146,19 @@ TEST(MapFile, LeavesOutPointsThatAreTooFarAway) {
   expect_consistent(stored.map);
 }
 
+// The edge between two of them is longer than each is far from the origin.
+TEST(MapFile, HoldsLoopsBetweenTheFarthestKeyframes) {
+  const TestFolder folder;
+  MapSnapshot s = sample_snapshot();
+  SE3& a = s.parts.keyframes[s.loops[0].a].world_from_camera;
+  SE3& b = s.parts.keyframes[s.loops[0].b].world_from_camera;
+  a = SE3(so3_exp({0.1, 0.2, 0.3}), {1e6, 0.0, 0.0});
+  b = SE3(so3_exp({0.3, 0.2, 0.1}), {-1e6, 0.0, 0.0});
+  s.loops[0].a_from_b = a.inverse() * b;
+  save_map(folder / "m", s);
+  EXPECT_NEAR(load_map(folder / "m").loops[0].a_from_b.translation().norm(), 2e6, 1e-6);
+}
+
 TEST(MapFile, OfOthersThatHurtIsRefused) {
   const char* const shared = std::getenv("DXSLAM_SHARED");
   const std::string cases =

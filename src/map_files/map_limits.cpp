@@ -82,9 +82,8 @@ bool is_possible_index(std::int64_t index) { return index >= 0 && index <= kLast
 
 bool is_possible_stamp(double stamp) { return std::abs(stamp) <= kLatestStamp; }
 
-bool is_possible(const SE3& pose) {
-  return std::abs(pose.rotation().norm() - 1.0) < 1e-6 &&
-         pose.translation().norm() <= kFarthestInMap;
+bool is_possible(const SE3& pose, double farthest) {
+  return std::abs(pose.rotation().norm() - 1.0) < 1e-6 && pose.translation().norm() <= farthest;
 }
 
 bool is_possible(const MapPoint& p) {
@@ -168,7 +167,7 @@ void check_numbers(const MapSnapshot& snapshot, const std::string& where) {
   }
   expect(is_possible_covisibility(snapshot.parts), "too many pairs of keyframes share points");
   for (const StoredLoopEdge& loop : snapshot.loops) {
-    expect(is_possible(loop.a_from_b), "a loop edge is no rigid motion");
+    expect(is_possible(loop.a_from_b, kLongestLoopEdge), "a loop edge is no rigid motion");
   }
   for (const std::string& picture : snapshot.thumbnails) {
     expect(picture.size() <= kLargestThumbnail, "a thumbnail is too large");

@@ -21,6 +21,8 @@ inline constexpr std::size_t kLongestMapText = 4096;                  ///< bytes
 inline constexpr std::size_t kMostFrameKeypoints = 1000000;
 inline constexpr std::size_t kLargestThumbnail = std::size_t{1} << 20;  ///< bytes
 inline constexpr double kFarthestInMap = 1e6;  ///< metres from the origin of the world
+/// Metres between two keyframes of one world; 1 m for rounding.
+inline constexpr double kLongestLoopEdge = 2.0 * kFarthestInMap + 1.0;
 
 /// Without control characters, and not too long.
 bool is_possible_text(const std::string& text);
@@ -28,7 +30,7 @@ bool is_possible(const DescriptorTraits& traits);
 bool is_possible_index(std::int64_t index);
 bool is_possible_stamp(double stamp);
 /// A rigid motion that does not lead too far.
-bool is_possible(const SE3& pose);
+bool is_possible(const SE3& pose, double farthest = kFarthestInMap);
 bool is_possible(const MapPoint& point);
 /// Pixels, depths, scores and sigmas; pixels may lie somewhat outside of the image.
 bool are_possible_keypoints(const Frame& frame, const Camera& camera);

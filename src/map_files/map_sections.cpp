@@ -58,14 +58,15 @@ StoredPose stored(const SE3& pose) {
   return out;
 }
 
-SE3 restored(const StoredPose& stored, const SectionReader& reader) {
+SE3 restored(const StoredPose& stored, const SectionReader& reader,
+             double farthest = kFarthestInMap) {
   const Eigen::Quaterniond rotation(Eigen::Map<const Eigen::Vector4d>(stored.rotation));
   const Eigen::Vector3d translation(Eigen::Map<const Eigen::Vector3d>(stored.translation));
   // Before it is normalised.
   const bool unit = std::abs(rotation.norm() - 1.0) < 1e-6;
   const SE3 pose(unit ? rotation : Eigen::Quaterniond::Identity(), translation);
-  if (!unit || !is_possible(pose)) {
-    reader.fail(fmt::format("a pose that is no rigid motion of at most {} m", kFarthestInMap));
+  if (!unit || !is_possible(pose, farthest)) {
+    reader.fail(fmt::format("a pose that is no rigid motion of at most {} m", farthest));
   }
   return pose;
 }
@@ -228,7 +229,7 @@ std::vector<StoredLoopEdge> read_loops(SectionReader reader, const MapParts& par
         parts.keyframes[in.a].component != parts.keyframes[in.b].component) {
       reader.fail(fmt::format("a loop between keyframes {} and {}", in.a, in.b));
     }
-    loops.push_back({in.a, in.b, restored(in.a_from_b, reader)});
+    loops.push_back({in.a, in.b, restored(in.a_from_b, reader, kLongestLoopEdge)});
   }
   reader.expect_end();
   return loops;
