@@ -51,6 +51,8 @@ constexpr const char* kScene = "scene.json";
 
 // Whether the folder has the scene.json that write_tum_sequence() makes first of all.
 bool is_made_here(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / kScene, error)) return false;  // a pipe would be waited for
   std::ifstream file(folder / kScene, std::ios::binary);
   const auto scene = nlohmann::json::parse(file, nullptr, false);
   return scene.is_object() && scene.contains("options") && scene.contains("path_length_m") &&

@@ -3,6 +3,7 @@
 #include "synthetic/tum_writer.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -103,6 +104,8 @@ TEST_F(TumWriter, EmptiesNoFolderOfOthers) {
   std::ofstream(folder_ / "scene.json") << "{}";
   EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), writer), InputError);
   fs::remove(folder_ / "scene.json");
+  EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), writer), InputError);
+  ASSERT_EQ(::mkfifo((folder_ / "scene.json").c_str(), 0600), 0);  // which nobody writes to
   EXPECT_THROW(write_tum_sequence(sequence, folder_.string(), writer), InputError);
   EXPECT_EQ(open_sequence(folder_.string())->size(), sequence.size());
 }

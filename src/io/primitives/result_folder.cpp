@@ -29,11 +29,14 @@ constexpr const char* kOnTheWay = ".dxslam-previous";  // becomes kPrevious when
 
 bool matches(const std::string& name, const std::vector<std::string>& patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+    return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
   });
 }
 
+// Only of a regular file: opening a pipe would wait for somebody to write into it.
 bool holds_more_than_comments(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
   std::ifstream stream(file, std::ios::binary);
   for (std::string line; std::getline(stream, line);) {
     if (!line.empty() && line.front() != '#') return true;
@@ -73,16 +76,45 @@ ResultFolder::ResultFolder(std::string folder, ResultFiles files)
   made_ = !fs::exists(folder_, error);
   make_folder(folder_);
   lock();
+  try {
+    require_usable();
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+void ResultFolder::require_usable() const {
+  std::error_code error;
+  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
+    if (!matches(it->path().filename().string(), files_.all)) continue;
+    const fs::file_status status = it->status(error);
+    if (fs::is_regular_file(status) || !fs::exists(status)) continue;  // a link may lead nowhere
+    throw InputError(fmt::format("{}: is no regular file, expected a result or nothing there",
+                                 it->path().string()));
+  }
   for (const char* name : {kPrevious, kOnTheWay}) {
     for (fs::directory_iterator it(file(name), error), end; !error && it != end;
          it.increment(error)) {
       if (matches(it->path().filename().string(), files_.all)) continue;
-      const std::string other = it->path().string();
-      release();
-      throw InputError(fmt::format(
-          "{}: is no result, expected nothing but the last results in that folder", other));
+      throw InputError(
+          fmt::format("{}: is no result, expected nothing but the last results in that folder",
+                      it->path().string()));
     }
   }
+}
+
+bool ResultFolder::claims(const std::string& path) const {
+  std::error_code error;
+  const fs::path folder = fs::weakly_canonical(folder_, error);
+  if (error) return false;
+  const fs::path target = fs::weakly_canonical(path, error);
+  if (error) return false;
+  const std::string inside = target.lexically_relative(folder).string();
+  for (const char* name : {kPrevious, kOnTheWay}) {
+    if (inside == name || inside.starts_with(std::string(name) + "/")) return true;
+  }
+  return inside == kLock || matches(inside, files_.all);
 }
 
 ResultFolder::~ResultFolder() { release(); }

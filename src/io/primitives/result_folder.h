@@ -28,7 +28,8 @@ class ResultFolder {
  public:
   /// Makes the folder, where it is missing, and takes it for this object; no other process gets it
   /// as long. Throws InputError, one sentence, if it cannot be made or written to, if another run
-  /// writes into it, and if its folder `previous` holds other files.
+  /// writes into it, if something that is no regular file (a pipe, a folder) has the name of a
+  /// result, and if its folder `previous` holds other files.
   ResultFolder(std::string folder, ResultFiles files);
   ~ResultFolder();
   ResultFolder(const ResultFolder&) = delete;
@@ -37,6 +38,8 @@ class ResultFolder {
   const std::string& path() const { return folder_; }
   /// The path of a file in it.
   std::string file(const std::string& name) const;
+  /// Whether a file at `path` would be taken for one of the results, and so be replaced or removed.
+  bool claims(const std::string& path) const;
 
   /// Puts the last results aside; once, further calls do nothing. Throws InputError if that fails,
   /// and goes on where it stopped when it is called again.
@@ -46,6 +49,7 @@ class ResultFolder {
   bool finish();
 
  private:
+  void require_usable() const;
   bool has_content() const;
   bool whole() const;
   std::vector<std::string> results_in(const std::string& folder) const;

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "io/primitives/result_folder.h"
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
@@ -136,6 +137,40 @@ TEST(ResultFolder, RefusesFoldersThatItCannotUse) {
   folder.write("previous/holiday.jpg", "mine");
   expect_input_error([&] { ResultFolder(folder.path(), run_files()); }, {"previous/holiday.jpg"});
   EXPECT_EQ(folder.read("previous/holiday.jpg"), "mine");
+}
+
+// Opening a pipe would wait for ever, in the constructor or at the first pose.
+TEST(ResultFolder, RefusesWhatIsNoFileInThePlaceOfAResult) {
+  const TestFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "trajectory.txt").c_str(), 0600), 0);
+  expect_input_error([&] { ResultFolder(folder.path(), run_files()); },
+                     {"trajectory.txt", "no regular file"});
+  fs::remove(folder / "trajectory.txt");
+  fs::create_directory(folder / "summary.json");
+  expect_input_error([&] { ResultFolder(folder.path(), run_files()); }, {"summary.json"});
+  fs::remove(folder / "summary.json");
+  fs::create_symlink("nowhere", folder / "map_1.txt");
+  ResultFolder results(folder.path(), run_files());
+  ASSERT_EQ(::mkfifo((folder / "trajectory.txt").c_str(), 0600), 0);  // while it runs
+  results.begin();
+}
+
+TEST(ResultFolder, ClaimsWhatItReplacesOrRemoves) {
+  const TestFolder folder;
+  fs::create_directory(folder / "other");
+  fs::create_symlink(folder.path(), folder / "other/link");
+  folder.write("map_2.txt", "a result");
+  fs::create_symlink("map_2.txt", folder / "leads_there");
+  const ResultFolder results(folder.path(), run_files());
+  for (const char* name :
+       {"trajectory.txt", "map_12.txt", "other/../summary.json", "previous", "previous/m.dxmap",
+        "other/link/map_1.txt", "leads_there", ".dxslam.lock"}) {
+    EXPECT_TRUE(results.claims(folder / name)) << name;
+  }
+  for (const char* name : {"m.dxmap", "map_of_town.txt", "other/trajectory.txt", "previous_map"}) {
+    EXPECT_FALSE(results.claims(folder / name)) << name;
+  }
+  EXPECT_FALSE(results.claims("trajectory.txt"));
 }
 
 }  // namespace
