@@ -132,10 +132,13 @@ std::vector<KeyframeId> LocalMapper::cull_keyframes(KeyframeId newest) {
   return culled;
 }
 
-int LocalMapper::adjust_full_bundle(const BundleOptions& options, const MayGoOn& may_go_on) {
+int LocalMapper::adjust_full_bundle(const BundleOptions& options, const MayGoOn& may_go_on,
+                                    const MapChange& change) {
   LocalBundle bundle = gather_full_bundle(map_, camera_);
   const BundleReport result = adjust_bundle(camera_, bundle.problem, options, may_go_on);
-  return result.usable ? apply_local_bundle(bundle, result, map_) : 0;
+  int outliers = 0;
+  if (result.usable) change([&] { outliers = apply_local_bundle(bundle, result, map_); });
+  return outliers;
 }
 
 void LocalMapper::adjust_local_bundle(KeyframeId keyframe, MappingReport& report) {

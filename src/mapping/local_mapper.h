@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/camera.h"
@@ -30,6 +31,9 @@ struct MappingReport {
   int outlier_observations = 0;
 };
 
+/// Calls what it is given, which changes the map; to know when that is.
+using MapChange = std::function<void(const std::function<void()>&)>;
+
 /// Grows and refines the map, keyframe by keyframe (paper III.A, "Local mapping"). Owns the map.
 /// Belongs to one thread; others see the map through local_map().
 class LocalMapper {
@@ -45,8 +49,10 @@ class LocalMapper {
   void refine(MappingReport& report);
 
   /// Adjusts all keyframes and points together. Returns the observations unbound as outliers.
-  /// Leaves the map as it is where `may_go_on` says no.
-  int adjust_full_bundle(const BundleOptions& options, const MayGoOn& may_go_on = {});
+  /// Leaves the map as it is where `may_go_on` says no. All that changes the map is done in one
+  /// call of `change`.
+  int adjust_full_bundle(const BundleOptions& options, const MayGoOn& may_go_on,
+                         const MapChange& change);
 
   /// What comes from now on is of another recording than the map so far.
   void begin_recording();

@@ -136,14 +136,18 @@ RelocalizationAnswer Backend::relocalize(const Frame& frame) {
   return answer;
 }
 
-void Backend::finish(const MayGoOn& may_go_on) {
+void Backend::finish(const MayGoOn& may_go_on, const MapChange& change) {
   if (!grown_) return;
   if (options_.final_bundle && map().keyframe_count() > 1) {
     closer_.cancel();
-    if (!must_stop(may_go_on)) mapper_.adjust_full_bundle(options_.full_bundle, may_go_on);
+    if (!must_stop(may_go_on)) {
+      mapper_.adjust_full_bundle(options_.full_bundle, may_go_on, change);
+    }
     return;
   }
-  while (!closer_.poll(mapper_.map()) && closer_.bundle_pending()) {
+  bool arrived = false;
+  const auto poll = [&] { arrived = closer_.poll(mapper_.map()).has_value(); };
+  for (change(poll); !arrived && closer_.bundle_pending(); change(poll)) {
     if (must_stop(may_go_on)) closer_.cancel();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }

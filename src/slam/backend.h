@@ -52,9 +52,10 @@ class Backend {
   void forget_seen() { consensus_.reset(); }
 
   /// Ends what runs in the background and, if so configured, adjusts the whole map once more; a map
-  /// that was only localized in stays as it is.
-  /// Neither, as soon as `may_go_on` says no.
-  void finish(const MayGoOn& may_go_on = {});
+  /// that was only localized in stays as it is. Neither, as soon as `may_go_on` says no. What
+  /// changes the map is handed to `change`, which calls it: what is thrown outside of it leaves the
+  /// map whole.
+  void finish(const MayGoOn& may_go_on, const MapChange& change);
 
   const Map& map() const { return mapper_.map(); }
   const std::vector<LoopEdge>& closed_loops() const { return closer_.closed_loops(); }

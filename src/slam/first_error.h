@@ -16,6 +16,10 @@ class FirstError {
     const std::lock_guard lock(mutex_);
     if (!error_) error_ = std::current_exception();
   }
+  bool there_is_one() const {
+    const std::lock_guard lock(mutex_);
+    return error_ != nullptr;
+  }
   /// Does nothing while there is none.
   void rethrow() const {
     const std::lock_guard lock(mutex_);

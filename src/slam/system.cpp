@@ -108,13 +108,14 @@ void System::finish(const MayGoOn& may_go_on) {
   extracted_.close();  // each thread closes the queue behind it when its own runs dry
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
-  error_.rethrow();
-  guard([&] {
-    const Stopwatch watch;
-    change_map([&] { backend_.finish(may_go_on); });
-    times_.add("full_bundle", watch.ms());
-    note_map_size();
-  });
+  if (!has_failed()) {
+    guard([&] {
+      const Stopwatch watch;
+      backend_.finish(may_go_on, [this](const Task& change) { change_map(change); });
+      times_.add("full_bundle", watch.ms());
+    });
+  }
+  if (map_whole_) note_map_size();
   error_.rethrow();
 }
 

@@ -69,11 +69,12 @@ struct MapSize {
 /// process(), try_process() and finish() belong to one thread; on_frame is called by the tracking
 /// thread (in deterministic mode by the caller's).
 ///
-/// What goes wrong in tracking or mapping ends the run: process(), try_process() and finish() throw
-/// it, every time from then on. finish() stops the threads all the same, so that the results so far
-/// can be read afterwards: the frames always, and the map and what hangs on it (components,
-/// trajectories) where map_is_whole(). What extraction throws concerns its image alone: the next
-/// one may follow. What a callback throws is caught and counted (callback_failures()).
+/// What goes wrong in tracking or mapping ends the run (has_failed()): process(), try_process() and
+/// finish() throw it, every time from then on. finish() stops the threads all the same, so that the
+/// results so far can be read afterwards: the frames always, and the map and what hangs on it
+/// (components, trajectories) where map_is_whole(). What extraction throws concerns its image
+/// alone: the next one may follow. What a callback throws is caught and counted
+/// (callback_failures()).
 class System {
  public:
   using FrameCallback = std::function<void(const TrackedFrame&)>;
@@ -110,6 +111,8 @@ class System {
   /// throw what went wrong again. Where `may_go_on` says no, what would adjust the whole map is
   /// given up and the map left as tracking and mapping made it.
   void finish(const MayGoOn& may_go_on = {});
+  /// Whether something went wrong in tracking or mapping: no image is taken any more. Any thread.
+  bool has_failed() const { return error_.there_is_one(); }
 
   /// Every frame given, in order. The ones that began a map have no reference.
   const FrameLog& frames() const { return frames_; }
