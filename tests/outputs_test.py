@@ -8,7 +8,9 @@ usage: outputs_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dx
 """
 import json
 import os
+import pathlib
 import random
+import resource
 import shutil
 import signal
 import struct
@@ -23,6 +25,7 @@ from cli_test import BAD_INPUT, INTERRUPTED, PROGRAM, TIMEOUT, TRACKING_FAILED, 
 
 FRAMES = 30
 WIDTH, HEIGHT = 640, 480  # of the recording
+ENOUGH_FOR_SMALL_BLOCKS = 500_000  # but not for an image of this size
 RESULTS = {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "trajectory.svg",
            "summary.json"}
 
@@ -255,6 +258,23 @@ class FailedOutputs(Outputs):
         self.assertEqual(photo.read_bytes(), b"\xff\xd8 not a map")
         self.refuse(self.run_orb("--out", photo), str(photo))
 
+    def test_a_pipe_in_the_place_of_a_result_is_refused(self):
+        self.out.mkdir()
+        for name, command in {"trajectory.txt": "run", "online_1.txt": "lifelong"}.items():
+            os.mkfifo(self.out / name)
+            self.refuse(dxslam(command, self.recording, "--features", "orb", "--out", self.out),
+                        str(self.out / name), "no regular file")
+            (self.out / name).unlink()
+
+    def test_a_map_in_the_place_of_a_result_is_refused(self):
+        for command, name in (("run", "map.ply"), ("run", "online_7.txt"),
+                              ("lifelong", "lifelong.json"), ("run", "../out/trajectory.txt")):
+            self.refuse(dxslam(command, self.recording, "--features", "orb", "--out", self.out,
+                               "--map-out", self.out / name), name, "expected another name")
+            self.assertFalse(self.out.exists())
+        self.ends(self.run_orb("--out", self.out, "--map-out", self.out / "m.dxmap"), 0)
+        self.assertEqual(names(self.out), RESULTS | {"m.dxmap"})
+
     def test_what_can_be_written_is_written_and_all_failures_are_listed(self):
         """The targets become unusable while the program runs."""
         limited = f"ulimit -f 8; exec {PROGRAM} run {self.recording} --features orb --out {self.out} " \
@@ -269,6 +289,60 @@ class FailedOutputs(Outputs):
         self.assertGreater(len(poses(self.out / "trajectory.txt")), FRAMES // 2)
         self.assertIn("keyframes.txt", names(self.out))
         self.assertFalse((self.folder / "m.dxmap").exists())
+
+
+class InnerErrors(Outputs):
+    """Memory ends for a while: no image can be read or worked on."""
+
+    def without_memory_for_a_while(self, poses_file, *command):
+        """Runs a command, and takes memory from it once there are some poses; what it says."""
+        # Large blocks come from the system each time, so that the limit is felt; small ones do not.
+        process = subprocess.Popen([PROGRAM, *map(str, command), "--features", "orb", "--out", self.out],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                   stdin=subprocess.DEVNULL,
+                                   env={**os.environ, "MALLOC_MMAP_THRESHOLD_": "65536",
+                                        "MALLOC_TOP_PAD_": "0"})
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + TIMEOUT
+        while not poses_file.exists() or len(poses(poses_file)) < FRAMES // 2:
+            self.assertIsNone(process.poll(), "the command ended before there were poses")
+            self.assertLess(time.monotonic(), deadline, "no pose appeared")
+            time.sleep(0.01)
+        pages = int(pathlib.Path(f"/proc/{process.pid}/statm").read_text().split()[0])
+        resource.prlimit(process.pid, resource.RLIMIT_AS,
+                         (pages * resource.getpagesize() + ENOUGH_FOR_SMALL_BLOCKS,
+                          resource.RLIM_INFINITY))
+        time.sleep(0.2)
+        resource.prlimit(process.pid, resource.RLIMIT_AS, 2 * (resource.RLIM_INFINITY,))
+        said = process.communicate(timeout=TIMEOUT)[1]
+        return process.returncode, said
+
+    def test_cost_a_run_only_their_images(self):
+        code, said = self.without_memory_for_a_while(
+            self.out / "trajectory.txt", "run", self.recording, "--realtime", "--map-out",
+            self.folder / "m.dxmap")
+        summary = self.summary()
+        self.assertIn("frames were skipped; the first", said)
+        self.assertGreater(len(summary["skipped_frames"]), 0)
+        self.assertIsNone(summary["error"])
+        self.assertEqual(names(self.out), RESULTS)
+        self.assertEqual(code, 0, said)
+        self.assertGreater(summary["tracked"], summary["frames"] // 2)
+        self.ends(dxslam("map", "check", self.folder / "m.dxmap"), 0)
+
+    def test_cost_lifelong_only_their_images(self):
+        code, said = self.without_memory_for_a_while(
+            self.out / "online_1.txt", "lifelong", *6 * [self.recording], "--map-out",
+            self.folder / "m.dxmap")
+        self.assertEqual(code, 0, said)
+        rows = json.loads((self.out / "lifelong.json").read_text())
+        self.assertEqual(len(rows), 6)
+        self.assertGreater(sum(row["skipped_frames"] for row in rows), 0)
+        for number, row in enumerate(rows, 1):
+            self.assertEqual(len(poses(self.out / f"online_{number}.txt")), row["localized"])
+        self.assertEqual(rows[-1]["frames"], FRAMES)
+        self.ends(dxslam("map", "check", self.folder / "m.dxmap"), 0)
 
 
 class Told(Outputs):

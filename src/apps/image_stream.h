@@ -23,9 +23,9 @@ class ImageStream {
   };
 
   /// Each source is the folder of a recording (any format that `dxslam run` reads) or of photos
-  /// (PNG and JPEG files, by name), whole or in part: FOLDER@FIRST:END or FOLDER@FIRST:END:STEP,
-  /// counted from 0, END left out. `stride` n takes every n-th of these images. Throws InputError
-  /// if a source cannot be used.
+  /// (image files, ordered by the numbers in their names), whole or in part: FOLDER@FIRST:END or
+  /// FOLDER@FIRST:END:STEP, counted from 0, END left out. `stride` n takes every n-th of these
+  /// images. Throws InputError if a source cannot be used.
   ImageStream(const std::vector<std::string>& sources, std::size_t stride);
 
   std::size_t size() const { return images_.size(); }

@@ -53,23 +53,29 @@ void save_system_map(const std::string& path, const MapHeader& header, const Map
   save_map(path, take_snapshot(header, map, stored_loops(map, loops), thumbnails));
 }
 
+bool AutoSaver::is_ready() {
+  return !under_way_.valid() ||
+         under_way_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
 void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops,
                      const std::vector<std::string>& thumbnails) {
-  if (under_way_.valid()) {
-    if (under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    finish();
-  }
-  under_way_ = std::async(
-      std::launch::async,
-      [path = path_, snapshot = take_snapshot(header_, map, stored_loops(map, loops), thumbnails)] {
-        save_map(path, snapshot);
-      });
+  finish();
+  attempt([&] {
+    under_way_ = std::async(
+        std::launch::async,
+        [path = path_, snapshot = take_snapshot(header_, map, stored_loops(map, loops),
+                                                thumbnails)] { save_map(path, snapshot); });
+  });
 }
 
 void AutoSaver::finish() {
-  if (!under_way_.valid()) return;
+  if (under_way_.valid()) attempt([this] { under_way_.get(); });
+}
+
+void AutoSaver::attempt(const std::function<void()>& step) {
   try {
-    under_way_.get();
+    step();
   } catch (const std::exception& e) {
     if (!warned_) warn("autosave: {}; the run goes on and tries again", e.what());
     warned_ = true;

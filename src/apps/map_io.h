@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <functional>
 #include <future>
 #include <string>
 #include <vector>
@@ -32,19 +33,22 @@ void save_system_map(const std::string& path, const MapHeader& header, const Map
                      const std::vector<LoopEdge>& loops,
                      const std::vector<std::string>& thumbnails);
 
-/// Saves a map in a thread of its own, so that mapping need not wait for the disk. While one save
-/// is under way further ones are left out. A save that fails is said once on stderr; the next one
-/// tries again.
+/// Saves a map in a thread of its own, so that mapping need not wait for the disk. A save that
+/// fails is said once on stderr; the next one tries again. One thread at a time; nothing is thrown.
 class AutoSaver {
  public:
   AutoSaver(std::string path, MapHeader header) : path_(std::move(path)), header_(header) {}
-  /// Copies the map and returns.
+  /// False while a save is under way: the next one has to be left out.
+  bool is_ready();
+  /// Copies the map and returns. Only when it is ready.
   void save(const Map& map, const std::vector<LoopEdge>& loops,
             const std::vector<std::string>& thumbnails);
   /// Waits for the save under way.
   void finish();
 
  private:
+  void attempt(const std::function<void()>& step);
+
   std::string path_;
   MapHeader header_;
   bool warned_ = false;

@@ -2,6 +2,10 @@
 // Copyright 2026 The dxslam authors
 #include "apps/online_trajectory.h"
 
+#include <fmt/format.h>
+
+#include <exception>
+
 #include "apps/console.h"
 #include "core/error.h"
 
@@ -9,10 +13,14 @@ namespace dxslam::apps {
 
 void OnlineTrajectory::append(const StampedPose& pose) {
   if (folder_ == nullptr) return;
-  waiting_.push_back(pose);
   try {
+    waiting_.push_back(pose);
+    if (waiting_.size() > kMostWaiting) {
+      waiting_.pop_front();
+      ++forgotten_;
+    }
     write_waiting();
-  } catch (const InputError& e) {
+  } catch (const std::exception& e) {
     if (!warned_) warn("{}; the run goes on and tries again", e.what());
     warned_ = true;
   }
@@ -21,20 +29,16 @@ void OnlineTrajectory::append(const StampedPose& pose) {
 void OnlineTrajectory::write_waiting() {
   folder_->begin();
   if (!writer_) writer_.emplace(folder_->file(name_));
-  std::size_t written = 0;
-  try {
-    for (; written < waiting_.size(); ++written) writer_->append(waiting_[written]);
-  } catch (const InputError&) {
-    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(written));
-    throw;
-  }
-  waiting_.clear();
+  for (; !waiting_.empty(); waiting_.pop_front()) writer_->append(waiting_.front());
 }
 
 void OnlineTrajectory::finish() {
   if (folder_ == nullptr) return;
   write_waiting();
   writer_.reset();
+  if (forgotten_ == 0) return;
+  throw InputError(fmt::format("{}: {} poses are missing, for it could not be written for a while",
+                               folder_->file(name_), forgotten_));
 }
 
 }  // namespace dxslam::apps

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "apps/recording_report.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/console.h"
@@ -33,6 +34,21 @@ void print_recording(const RgbdSequence& recording) {
   }
   warn("depth: {:g} units per metre, median {:.2f} m in the first images, {:.0f} % of their pixels",
        c.depth_factor, facts.median_depth, 100.0 * facts.depth_share);
+}
+
+std::vector<SkippedFrame> all_skipped(const RgbdSequence& recording,
+                                      const std::vector<SkippedFrame>& failed) {
+  std::vector<SkippedFrame> all = recording.skipped();
+  all.insert(all.end(), failed.begin(), failed.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.index < b.index; });
+  return all;
+}
+
+void print_skipped(const std::vector<SkippedFrame>& skipped) {
+  if (skipped.empty()) return;
+  warn("{} frames were skipped; the first, {}: {}", skipped.size(), skipped.front().index,
+       skipped.front().reason);
 }
 
 Json camera_json(const Camera& c) {

@@ -12,6 +12,12 @@
 
 namespace dxslam::apps {
 
+/// Frames that could not be read, and `failed` ones, in order.
+std::vector<SkippedFrame> all_skipped(const RgbdSequence& recording,
+                                      const std::vector<SkippedFrame>& failed);
+/// Says on stderr how many there are and why the first was skipped; nothing where there is none.
+void print_skipped(const std::vector<SkippedFrame>& skipped);
+
 /// Two lines on stderr: the calibration used and its source, and what the depth images hold.
 void print_recording(const RgbdSequence& recording);
 /// The same as fields: calibration, camera, depth_factor, median_depth_m, depth_share.

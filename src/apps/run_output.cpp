@@ -11,6 +11,7 @@
 #include <opencv2/core/version.hpp>
 #include <utility>
 
+#include "apps/console.h"
 #include "apps/recording_report.h"
 #include "apps/system_setup.h"
 #include "core/error.h"
@@ -69,9 +70,9 @@ Json stage_table(const System& system) {
   return stages;
 }
 
-Json skipped_frames(const RgbdSequence& sequence) {
+Json skipped_frames(const RgbdSequence& sequence, const RunRecord& record) {
   Json skipped = Json::array();
-  for (const SkippedFrame& s : sequence.skipped()) {
+  for (const SkippedFrame& s : all_skipped(sequence, record.failed_images)) {
     skipped.push_back({{"frame", s.index}, {"reason", s.reason}});
   }
   return skipped;
@@ -130,14 +131,20 @@ Json loop_table(const System& system) {
           {"candidates", candidates}};
 }
 
-// What the system tells.
-void add_system(Json& summary, const System& system) {
+// What the system tells. The frames may be in a file, which may fail.
+void add_system(OutputSteps& steps, Json& summary, const System& system) {
   summary["features"] = system.extractor().name();
-  summary["lost_intervals"] = lost_intervals(system);
-  summary["keyframes"] = system.map().keyframe_count();
-  summary["points"] = system.map().point_count();
+  summary["lost_intervals"] = nullptr;
+  steps.run([&] { summary["lost_intervals"] = lost_intervals(system); });
+  if (system.map_is_whole()) {
+    summary["keyframes"] = system.map().keyframe_count();
+    summary["points"] = system.map().point_count();
+  }
   summary["mapping"] = mapping_table(system);
-  summary["components"] = components_table(system);
+  summary["components"] = nullptr;
+  if (system.map_is_whole()) {
+    steps.run([&] { summary["components"] = components_table(system); });
+  }
   summary["loops"] = loop_table(system);
   summary["stages"] = stage_table(system);
 }
@@ -162,7 +169,14 @@ void add_times(Json& summary, const RunRecord& record, double offered) {
   summary["peak_memory_mib"] = rounded(peak_memory_mib(), 0.1);
 }
 
-Json summarise(const Session& session, const RunRecord& record, const RgbdSequence& sequence) {
+Json failed_outputs(const OutputSteps& steps, const RunRecord& record) {
+  Json failed = steps.failures();
+  if (record.error) failed.erase(0);
+  return failed;
+}
+
+Json summarise(OutputSteps& steps, const Session& session, const RunRecord& record,
+               const RgbdSequence& sequence) {
   const double offered = static_cast<double>(std::max<std::size_t>(1, record.frames_offered));
   Json summary;
   summary["version"] = DXSLAM_VERSION;
@@ -173,13 +187,15 @@ Json summarise(const Session& session, const RunRecord& record, const RgbdSequen
   summary["tracked_share"] = static_cast<double>(record.frames_tracked) / offered;
   summary["no_pose_reason"] = record.why_no_pose ? Json(*record.why_no_pose) : Json(nullptr);
   summary["ate"] = truth_json(record.truth);
-  summary["skipped_frames"] = skipped_frames(sequence);
+  summary["skipped_frames"] = skipped_frames(sequence, record);
   summary["dropped_frames"] = record.frames_dropped;
   summary["interrupted"] = record.interrupted;
+  summary["error"] = record.error ? Json(*record.error) : Json(nullptr);
+  summary["callback_failures"] = record.callback_failures.count;
   summary["low_light_gain"] = record.low_light ? Json(*record.low_light) : Json(nullptr);
   summary["realtime"] = record.realtime;
   if (session.system() != nullptr) {
-    add_system(summary, *session.system());
+    add_system(steps, summary, *session.system());
     summary["notes"] = feature_notes(session.options(), session.system()->extractor());
   }
   add_times(summary, record, offered);
@@ -225,6 +241,7 @@ void keep_online(const ResultFolder& folder) {
   const fs::path running = folder.file("trajectory.txt");
   const fs::path kept = folder.file("trajectory_online.txt");
   std::error_code no_links;
+  if (!fs::exists(running)) return;  // no pose could be written, which was said
   fs::create_hard_link(running, kept, no_links);
   if (no_links) fs::copy_file(running, kept, fs::copy_options::overwrite_existing);
 }
@@ -241,6 +258,16 @@ void write_components(OutputSteps& steps, const ResultFolder& folder, const Syst
   }
 }
 
+void write_map_results(OutputSteps& steps, const ResultFolder& folder, const System* system) {
+  if (system != nullptr) steps.run([&] { write_components(steps, folder, *system); });
+  steps.run([&] {
+    write_trajectory(folder.file("keyframes.txt"),
+                     system ? system->keyframe_trajectory() : Trajectory());
+  });
+  const Map empty;
+  steps.run([&] { write_map(folder.file("map.ply"), system ? system->map() : empty); });
+}
+
 }  // namespace
 
 void write_results(OutputSteps& steps, Session& session, OnlineTrajectory& online,
@@ -248,26 +275,23 @@ void write_results(OutputSteps& steps, Session& session, OnlineTrajectory& onlin
   if (session.folder() == nullptr) return;
   ResultFolder& folder = *session.folder();
   const System* system = session.system();
+  const bool whole = system == nullptr || session.has_whole_map();
   // Where no pose has done so. What belongs together must not lie among the last results.
   if (!steps.run([&] { folder.begin(); })) return;
-  steps.run([&] {
-    online.finish();
-    keep_online(folder);
-  });
+  steps.run([&] { online.finish(); });
+  steps.run([&] { keep_online(folder); });
   steps.run([&] { write_trajectory(folder.file("trajectory.txt"), record.trajectory); });
-  if (system != nullptr) write_components(steps, folder, *system);
-  steps.run([&] {
-    write_trajectory(folder.file("keyframes.txt"),
-                     system ? system->keyframe_trajectory() : Trajectory());
-  });
-  const Map empty;
-  steps.run([&] { write_map(folder.file("map.ply"), system ? system->map() : empty); });
+  if (whole) {
+    write_map_results(steps, folder, system);
+  } else {
+    warn("keyframes.txt and map.ply: not written, for an error left the map half changed");
+  }
   steps.run([&] {
     write_file_atomically(folder.file("trajectory.svg"), draw_result(record.trajectory, sequence));
   });
   steps.run([&] {
-    Json summary = summarise(session, record, sequence);
-    summary["failed_outputs"] = steps.failures();
+    Json summary = summarise(steps, session, record, sequence);
+    summary["failed_outputs"] = failed_outputs(steps, record);
     write_file_atomically(folder.file("summary.json"), to_json_text(summary));
   });
   if (steps.failures().empty()) folder.finish();

@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "apps/session.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <functional>
 #include <future>
@@ -29,11 +31,18 @@ ResultFiles result_files() {
           {"trajectory.txt", "online_[0-9]*.txt"}};
 }
 
+// OpenCV's sentences end with one.
+std::string without_line_end(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
 // Something that is loaded in a thread of its own, for which nobody waits after a stop.
 template <class Value>
 class Loading {
  public:
-  explicit Loading(std::function<Value()> load) {
+  template <class Load>
+  explicit Loading(Load load) {
     std::packaged_task<Value()> task(std::move(load));
     loaded_ = task.get_future();
     thread_ = std::thread(std::move(task));
@@ -70,6 +79,11 @@ Session::Session(const RunSettings& settings)
 void Session::claim_targets() {
   if (!settings_.out.empty()) folder_.emplace(settings_.out, result_files());
   if (!settings_.map_out.empty()) require_map_target(settings_.map_out);  // may lie in the folder
+  if (folder_ && !settings_.map_out.empty() && folder_->claims(settings_.map_out)) {
+    throw InputError(
+        fmt::format("--map-out {}: is the place of a result of --out {}, expected another name",
+                    settings_.map_out, settings_.out));
+  }
   unsaved_.emplace();
 }
 
@@ -85,12 +99,18 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
   if ((map_in && !map_in->wait()) || !network.wait()) return nullptr;
   std::optional<StoredMap> stored;
   if (map_in) stored.emplace(map_in->get());
-  auto system = std::make_unique<System>(camera, network.get(), options_,
-                                         [this, on_frame = std::move(on_frame)](const auto& frame) {
-                                           first_pose_.note(frame);
-                                           thumbnails_->note(frame);
-                                           on_frame(frame);
-                                         });
+  const auto note = [this, on_frame = std::move(on_frame)](const TrackedFrame& frame) {
+    on_frame(frame);  // first: it counts the frames, and what is below may throw
+    first_pose_.note(frame);
+    thumbnails_->note(frame);
+  };
+  // It loads the vocabulary.
+  Loading<std::unique_ptr<System>> made(
+      [camera, extractor = network.get(), options = options_, note]() mutable {
+        return std::make_unique<System>(camera, std::move(extractor), options, note);
+      });
+  if (!made.wait()) return nullptr;
+  std::unique_ptr<System> system = made.get();
   tell_notes(feature_notes(options_, system->extractor()));
   header_ = map_header(camera, system->extractor());
   std::vector<std::string> pictures;
@@ -104,11 +124,36 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
     const int every = settings_.autosave > 0 ? settings_.autosave : kThumbnailsTidied;
     system->set_autosave(every, [this](const Map& map, const std::vector<LoopEdge>& loops) {
       thumbnails_->forget_culled(map);
-      if (settings_.autosave > 0) saver_->save(map, loops, thumbnails_->of(map));
+      if (settings_.autosave > 0 && saver_->is_ready()) {
+        saver_->save(map, loops, thumbnails_->of(map));
+      }
     });
   }
   system_ = system.get();
   return system;
+}
+
+void Session::run(const std::function<void()>& feed) {
+  if (system_ == nullptr) return;
+  for (const std::function<void()>& step : {feed, std::function<void()>([this] {
+                                              system_->finish([] { return !stop_requested(); });
+                                            })}) {
+    try {
+      step();
+    } catch (...) {
+      error_.keep_current();
+    }
+  }
+}
+
+bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,
+                      const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& e) {
+    if (!system_->has_failed()) failed.push_back({index, without_line_end(e.what())});
+  }
+  return !stop_requested() && !system_->has_failed();
 }
 
 bool Session::process(const RgbdImage& image, bool live) {
@@ -119,8 +164,12 @@ bool Session::process(const RgbdImage& image, bool live) {
   return true;
 }
 
-void Session::finish() {
-  if (system_ != nullptr) system_->finish([] { return !stop_requested(); });
+CallbackFailures Session::tell_callback_failures() const {
+  if (system_ == nullptr || system_->callback_failures().count == 0) return {};
+  const CallbackFailures& failures = system_->callback_failures();
+  warn("{} times what goes with a frame or an autosave failed; the first: {}", failures.count,
+       failures.first);
+  return failures;
 }
 
 std::optional<std::string> Session::why_no_pose() const {
@@ -129,6 +178,11 @@ std::optional<std::string> Session::why_no_pose() const {
 
 void Session::save_map(OutputSteps& steps) {
   if (settings_.map_out.empty()) return;
+  if (system_ != nullptr && !system_->map_is_whole()) {
+    warn("{}: not written, for an error left the map half changed{}", settings_.map_out,
+         settings_.autosave > 0 ? "; the last autosave stays" : "");
+    return;
+  }
   if (system_ == nullptr || system_->map().keyframe_count() == 0) {
     warn("{}: not written, for the map is empty", settings_.map_out);
     return;

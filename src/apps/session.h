@@ -2,9 +2,11 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/first_pose_report.h"
 #include "apps/map_io.h"
@@ -19,7 +21,7 @@ namespace dxslam::apps {
 
 /// What `dxslam run` and `dxslam lifelong` do alike around the system: options, targets, the
 /// network and the map it goes on with, saving. The steps in order: construction, claim_targets(),
-/// start(), images, finish(), outputs.
+/// start(), run(), outputs.
 class Session {
  public:
   /// Makes nothing yet. Throws InputError for settings that cannot be used.
@@ -42,15 +44,27 @@ class Session {
   System* system() { return system_; }
   const System* system() const { return system_; }
 
+  /// Calls `feed`, which gives the images, and waits until all are worked off. What goes wrong
+  /// inside ends them, but costs no output: see rethrow_error(). Does nothing without a system.
+  void run(const std::function<void()>& feed);
+  /// In `feed`, once per image: calls `work`, which reads and processes it. What that throws costs
+  /// this image alone, and is added to `failed`. Returns whether further images are wanted: not
+  /// after a stop, nor once tracking or mapping has failed.
+  bool attempt(std::size_t index, std::vector<SkippedFrame>& failed,
+               const std::function<void()>& work);
   /// Hands an image to the system; false if it was dropped (`live` only).
   bool process(const RgbdImage& image, bool live);
-  /// Waits until all images are worked off.
-  void finish();
 
-  /// Why there is no pose at all; nothing if there is one. After finish().
+  /// Throws what ended the images early. After run(), as all below.
+  void rethrow_error() const { error_.rethrow(); }
+  /// What the calls that should not fail have failed with meanwhile; says it on stderr.
+  CallbackFailures tell_callback_failures() const;
+  /// Whether the map can be read: no change of it has failed halfway.
+  bool has_whole_map() const { return system_ != nullptr && system_->map_is_whole(); }
+  /// Why there is no pose at all; nothing if there is one.
   std::optional<std::string> why_no_pose() const;
-  /// Saves the map where that was asked for. An empty one is not saved, which is said. After
-  /// finish().
+  /// Saves the map where that was asked for. An empty one is not saved, nor one that is not whole;
+  /// that is said.
   void save_map(OutputSteps& steps);
   /// All outputs are written: from here on a stop need not wait for this any more.
   void all_is_saved() { unsaved_.reset(); }
@@ -64,6 +78,7 @@ class Session {
   std::optional<AutoSaver> saver_;
   MapHeader header_;
   System* system_ = nullptr;
+  FirstError error_;
   std::optional<Unsaved> unsaved_;
 };
 

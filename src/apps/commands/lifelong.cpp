@@ -46,8 +46,11 @@ struct Visit {
   const bool first;
   std::size_t frames = 0;
   double first_stamp = 0.0;
-  Trajectory online;  ///< poses in the first map's world, as given at the time
-  OnlineTrajectory file;
+  std::vector<SkippedFrame> failed;
+  std::size_t tracked = 0;           ///< of them, and so in System::frames()
+  std::size_t localized = 0;         ///< frames with a pose in the first map's world
+  std::optional<double> first_pose;  ///< its stamp
+  OnlineTrajectory file;             ///< these poses, as given at the time
 };
 
 // Which visit the frames are of that are not tracked yet. Two threads.
@@ -56,6 +59,11 @@ class Underway {
   void push(Visit& visit) {
     const std::lock_guard lock(mutex_);
     visits_.push_back(&visit);
+  }
+  /// The one pushed last.
+  void take_back() {
+    const std::lock_guard lock(mutex_);
+    visits_.pop_back();
   }
   Visit& pop() {
     const std::lock_guard lock(mutex_);
@@ -106,20 +114,29 @@ void feed(RgbdSequence& recording, std::size_t stride, bool dark, Session& sessi
           Underway& underway) {
   const LowLight low_light(LowLight::kDefaultGain);
   session.system()->begin_sequence();
-  for (std::size_t i = 0; i < recording.size(); i += stride) {
-    std::optional<RgbdImage> image = recording.read(i);
-    if (stop_requested()) return;
-    if (!image) continue;
+  const auto give = [&](std::size_t index) {
+    std::optional<RgbdImage> image = recording.read(index);
+    if (!image || stop_requested()) return;
     if (dark) image->color = low_light.apply(image->color, image->index);
     if (visit.frames++ == 0) visit.first_stamp = image->stamp;
     underway.push(visit);
-    session.process(*image, false);
+    try {
+      session.process(*image, false);
+    } catch (...) {
+      if (!session.system()->has_failed()) underway.take_back();  // it will not be tracked
+      throw;
+    }
+  };
+  bool goes_on = !stop_requested();
+  for (std::size_t i = 0; goes_on && i < recording.size(); i += stride) {
+    goes_on = session.attempt(i, visit.failed, [&] { give(i); });
   }
 }
 
 void feed_all(const LifelongArguments& arguments, const Recordings& recordings, Session& session,
               std::deque<Visit>& visits, Underway& underway) {
-  for (std::size_t v = 0; v < recordings.size() && !stop_requested(); ++v) {
+  const System& system = *session.system();
+  for (std::size_t v = 0; v < recordings.size() && !stop_requested() && !system.has_failed(); ++v) {
     visits.emplace_back(*recordings[v], session.folder(), v + 1);
     const bool dark = std::count(arguments.low_light.begin(), arguments.low_light.end(),
                                  static_cast<int>(v) + 1) > 0;
@@ -129,83 +146,122 @@ void feed_all(const LifelongArguments& arguments, const Recordings& recordings, 
 
 // Poses given in a world of their own (a map begun anew and not yet joined) say nothing about the
 // place in the first map, so they do not count as localized.
-void note(const TrackedFrame& frame, Visit& visit) {
+bool is_localized(const TrackedFrame& frame, const Visit& visit) {
   const bool begins = frame.component == kNoId && visit.first;
-  if (frame.state != TrackingState::kTracking || (frame.component != 0 && !begins)) return;
-  visit.online.push_back({frame.stamp, frame.world_from_camera});
-  visit.file.append(visit.online.back());
+  return frame.state == TrackingState::kTracking && (frame.component == 0 || begins);
+}
+
+void note(const TrackedFrame& frame, Visit& visit) {
+  ++visit.tracked;
+  if (!is_localized(frame, visit)) return;
+  ++visit.localized;
+  if (!visit.first_pose) visit.first_pose = frame.stamp;
+  visit.file.append({frame.stamp, frame.world_from_camera});
+}
+
+/// What came of a visit.
+struct VisitResult {
+  Trajectory poses;  ///< in the first map's world, as given at the time
+  std::optional<TruthReport> truth;
+};
+
+// The poses were not kept while the recordings were fed, which may go on for days.
+std::vector<VisitResult> results_of(const System* system, const std::deque<Visit>& visits) {
+  std::vector<VisitResult> results(visits.size());
+  if (system == nullptr) return results;
+  std::size_t v = 0;
+  std::size_t seen = 0;
+  system->frames().for_each([&](const TrackedFrame& frame) {
+    for (; v < visits.size() && seen == visits[v].tracked; ++v) seen = 0;
+    if (v == visits.size()) return;  // an error came between the log and the count
+    ++seen;
+    if (!is_localized(frame, visits[v])) return;
+    results[v].poses.push_back({frame.stamp, frame.world_from_camera});
+  });
+  for (v = 0; v < visits.size(); ++v) {
+    results[v].truth = compare_with_truth(visits[v].recording, results[v].poses);
+  }
+  return results;
 }
 
 std::size_t localized(const std::deque<Visit>& visits) {
   std::size_t sum = 0;
-  for (const Visit& visit : visits) sum += visit.online.size();
+  for (const Visit& visit : visits) sum += visit.localized;
   return sum;
 }
 
-Json row_of(const Visit& visit, const MapSize& size) {
-  Json row = {{"sequence", visit.recording.name()},
-              {"frames", visit.frames},
-              {"localized", visit.online.size()},
-              {"keyframes", size.keyframes},
-              {"points", size.points}};
+std::size_t skipped(const Visit& visit) {
+  return visit.recording.skipped().size() + visit.failed.size();
+}
+
+Json row_of(const Visit& visit, const VisitResult& result, const MapSize& size) {
+  Json row = {{"sequence", visit.recording.name()}, {"frames", visit.frames},
+              {"skipped_frames", skipped(visit)},   {"localized", visit.localized},
+              {"keyframes", size.keyframes},        {"points", size.points}};
   row["seconds_to_first_pose"] =
-      visit.online.empty() ? Json(nullptr) : Json(visit.online.front().stamp - visit.first_stamp);
-  row["ate"] = truth_json(compare_with_truth(visit.recording, visit.online));
+      visit.first_pose ? Json(*visit.first_pose - visit.first_stamp) : Json(nullptr);
+  row["ate"] = truth_json(result.truth);
   row.update(recording_json(visit.recording));
   return row;
 }
 
-OpenlorisResult result_of(const LifelongArguments& arguments, const std::deque<Visit>& visits) {
+OpenlorisResult openloris_result(const LifelongArguments& arguments,
+                                 const std::vector<VisitResult>& results) {
   OpenlorisResult result;
   result.scene = arguments.scene;
   result.frame = arguments.frame;
-  for (std::size_t v = 0; v < visits.size(); ++v) {
+  for (std::size_t v = 0; v < results.size(); ++v) {
     OpenlorisSequence sequence;
     sequence.number = static_cast<int>(v) + 1;
-    sequence.poses = visits[v].online;
+    sequence.poses = results[v].poses;
     result.sequences.push_back(std::move(sequence));
   }
   return result;
 }
 
 void write_results(OutputSteps& steps, const LifelongArguments& arguments, Session& session,
-                   std::deque<Visit>& visits) {
+                   std::deque<Visit>& visits, const std::vector<VisitResult>& results) {
   ResultFolder& folder = *session.folder();
   if (!steps.run([&] { folder.begin(); })) return;
   for (Visit& visit : visits) steps.run([&] { visit.file.finish(); });
   steps.run([&] {
     write_openloris_result(folder.file(fmt::format("dxslam_{}.txt", arguments.scene)),
-                           result_of(arguments, visits));
+                           openloris_result(arguments, results));
   });
   steps.run([&] {
     Json table = Json::array();
     for (std::size_t v = 0; v < visits.size(); ++v) {
       const auto& sizes = session.system()->map_sizes();
-      table.push_back(row_of(visits[v], v < sizes.size() ? sizes[v] : MapSize{}));
+      table.push_back(row_of(visits[v], results[v], v < sizes.size() ? sizes[v] : MapSize{}));
     }
     write_file_atomically(folder.file("lifelong.json"), to_json_text(table));
   });
   if (steps.failures().empty()) folder.finish();
 }
 
-void print_outcome(const std::deque<Visit>& visits, const System* system) {
+void print_outcome(const std::deque<Visit>& visits, const std::vector<VisitResult>& results,
+                   const System* system) {
   for (std::size_t v = 0; v < visits.size(); ++v) {
     const Visit& visit = visits[v];
     const MapSize size = v < system->map_sizes().size() ? system->map_sizes()[v] : MapSize{};
     print("{:>3}  {:<24} {:>6} of {:>6} frames localized, {:>5} keyframes, {:>7} points\n", v + 1,
-          visit.recording.name(), visit.online.size(), visit.frames, size.keyframes, size.points);
-    if (const auto truth = compare_with_truth(visit.recording, visit.online)) {
-      print_truth(*truth, visit.recording.camera());
-    }
+          visit.recording.name(), visit.localized, visit.frames, size.keyframes, size.points);
+    if (results[v].truth) print_truth(*results[v].truth, visit.recording.camera());
+    print_skipped(all_skipped(visit.recording, visit.failed));
   }
 }
 
+// Whatever went wrong before: what can be saved is saved.
 int end(const LifelongArguments& arguments, Session& session, std::deque<Visit>& visits) {
+  session.tell_callback_failures();
   OutputSteps steps;
+  steps.run([&] { session.rethrow_error(); });
   session.save_map(steps);
-  write_results(steps, arguments, session, visits);
+  std::vector<VisitResult> results(visits.size());
+  steps.run([&] { results = results_of(session.system(), visits); });
+  write_results(steps, arguments, session, visits, results);
   session.all_is_saved();
-  print_outcome(visits, session.system());
+  print_outcome(visits, results, session.system());
   std::size_t frames = 0;
   for (const Visit& visit : visits) frames += visit.frames;
   const int code = judge_tracking(localized(visits), frames, session.why_no_pose());
@@ -234,8 +290,7 @@ int run(const LifelongArguments& arguments) {
     progress.update(++done, tracking ? "tracking" : "lost");
   });
   for (const auto& recording : recordings) print_recording(*recording);
-  if (system) feed_all(arguments, recordings, session, visits, underway);
-  session.finish();
+  session.run([&] { feed_all(arguments, recordings, session, visits, underway); });
   progress.finish();
   return end(arguments, session, visits);
 }

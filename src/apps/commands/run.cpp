@@ -44,9 +44,9 @@ const char* state_name(TrackingState state) {
 class RealTimePace {
  public:
   void wait_for(double stamp) {
-    if (first_stamp_ < 0.0) first_stamp_ = stamp;
+    if (!first_stamp_) first_stamp_ = stamp;
     sleep_until(start_ + std::chrono::duration_cast<Clock::duration>(std::min(
-                             std::chrono::duration<double>(stamp - first_stamp_), kLongest)));
+                             std::chrono::duration<double>(stamp - *first_stamp_), kLongest)));
   }
 
  private:
@@ -54,7 +54,7 @@ class RealTimePace {
   static constexpr std::chrono::duration<double> kLongest{1e9};  // what a clock can hold
 
   Clock::time_point start_ = Clock::now();
-  double first_stamp_ = -1.0;
+  std::optional<double> first_stamp_;
 };
 
 void feed(const RunArguments& arguments, RgbdSequence& sequence, Session& session,
@@ -62,16 +62,19 @@ void feed(const RunArguments& arguments, RgbdSequence& sequence, Session& sessio
   const std::optional<LowLight> low_light =
       arguments.low_light ? std::optional<LowLight>(LowLight(*arguments.low_light)) : std::nullopt;
   RealTimePace pace;
-  for (std::size_t i = 0; i < sequence.size(); i += arguments.settings.stride) {
-    if (arguments.max_frames > 0 && record.frames_offered >= arguments.max_frames) break;
-    std::optional<RgbdImage> image = sequence.read(i);
-    if (stop_requested()) break;
-    ++record.frames_offered;
-    if (!image) continue;
+  const auto give = [&](std::size_t index) {
+    std::optional<RgbdImage> image = sequence.read(index);
+    if (!image || stop_requested()) return;
     if (low_light) image->color = low_light->apply(image->color, image->index);
     if (arguments.realtime) pace.wait_for(image->stamp);
-    if (stop_requested()) break;
+    if (stop_requested()) return;
     if (!session.process(*image, arguments.realtime)) ++record.frames_dropped;
+  };
+  bool goes_on = !stop_requested();
+  for (std::size_t i = 0; goes_on && i < sequence.size(); i += arguments.settings.stride) {
+    if (arguments.max_frames > 0 && record.frames_offered >= arguments.max_frames) break;
+    ++record.frames_offered;
+    goes_on = session.attempt(i, record.failed_images, [&] { give(i); });
   }
 }
 
@@ -81,13 +84,21 @@ std::size_t planned_frames(const RunArguments& arguments, const RgbdSequence& se
   return arguments.max_frames > 0 ? std::min(n, arguments.max_frames) : n;
 }
 
+// As they were known when the frames were tracked, whichever map they are in.
+Trajectory poses_as_tracked(const System& system) {
+  Trajectory poses;
+  system.frames().for_each([&](const TrackedFrame& frame) {
+    if (frame.state != TrackingState::kTracking) return;
+    poses.push_back({frame.stamp, frame.world_from_camera});
+  });
+  return poses;
+}
+
 void conclude(const RgbdSequence& sequence, const Session& session, RunRecord& record) {
-  record.interrupted = stop_requested();
-  record.why_no_pose = session.why_no_pose();
   if (session.system() == nullptr) return;
-  const auto components = session.system()->components();
-  record.frames_tracked = components.empty() ? 0 : components.front().frames;
-  record.trajectory = session.system()->trajectory();
+  const System& system = *session.system();
+  record.trajectory = session.has_whole_map() ? system.trajectory() : poses_as_tracked(system);
+  record.frames_tracked = record.trajectory.size();
   record.truth = compare_with_truth(sequence, record.trajectory);
 }
 
@@ -98,25 +109,29 @@ void print_outcome(const RunRecord& record, const RgbdSequence& sequence, const 
     print(
         "{} of {} frames tracked, {} keyframes, {} points; {:.1f} ms per frame ({}), {:.1f} s in "
         "all\n",
-        record.frames_tracked, record.frames_offered, system->map().keyframe_count(),
-        system->map().point_count(), frame == stages.end() ? 0.0 : frame->second.median_ms,
-        system->extractor().name(), record.wall_s);
+        record.frames_tracked, record.frames_offered,
+        system->map_is_whole() ? system->map().keyframe_count() : 0,
+        system->map_is_whole() ? system->map().point_count() : 0,
+        frame == stages.end() ? 0.0 : frame->second.median_ms, system->extractor().name(),
+        record.wall_s);
   }
   if (record.truth) print_truth(*record.truth, sequence.camera());
-  if (!sequence.skipped().empty()) {
-    const SkippedFrame& first = sequence.skipped().front();
-    warn("{} frames were skipped; the first, {}: {}", sequence.skipped().size(), first.index,
-         first.reason);
-  }
+  print_skipped(all_skipped(sequence, record.failed_images));
   if (record.frames_dropped > 0) {
     warn("{} frames came too fast and were dropped", record.frames_dropped);
   }
 }
 
+// Whatever went wrong before: what can be saved is saved.
 int end(const RgbdSequence& sequence, Session& session, OnlineTrajectory& online,
-        const RunRecord& record) {
+        RunRecord& record) {
+  record.interrupted = stop_requested();
+  record.why_no_pose = session.why_no_pose();
+  record.callback_failures = session.tell_callback_failures();
   OutputSteps steps;
+  if (!steps.run([&] { session.rethrow_error(); })) record.error = steps.failures().front();
   session.save_map(steps);
+  steps.run([&] { conclude(sequence, session, record); });
   write_results(steps, session, online, record, sequence);
   session.all_is_saved();
   print_outcome(record, sequence, session.system());
@@ -148,11 +163,9 @@ int run(const RunArguments& arguments) {
   print_recording(*sequence);
   record.startup_ms = startup.ms();
   const Stopwatch wall;
-  if (system) feed(arguments, *sequence, session, record);
-  session.finish();
+  session.run([&] { feed(arguments, *sequence, session, record); });
   record.wall_s = wall.ms() / 1000.0;
   progress.finish();
-  conclude(*sequence, session, record);
   return end(*sequence, session, online, record);
 }
 
