@@ -11,14 +11,15 @@
 
 namespace dxslam {
 
-/// Items by ids that are given once and only rise, of which most are removed again: takes the
-/// memory of what lives (and 8 bytes per 4096 ids ever given), and a look-up is three steps. Items
+/// Items by ids that rise, of which most are removed again: takes the memory of what lives (and 8
+/// bytes per 4096 ids up to the largest), and a look-up is three steps. Items
 /// stay where they are until they are removed. Const as a pointer is: the items of a const table
 /// may be changed. As thread-safe as std::vector.
 template <class T>
 class IdTable {
  public:
   using Id = std::uint32_t;
+  static constexpr Id kLastId = 0xFFFFFFFEU;
 
   /// Null if there is none of this id.
   T* find(Id id) const {
@@ -26,6 +27,14 @@ class IdTable {
     if (branch >= branches_.size() || !branches_[branch]) return nullptr;
     const Leaf* leaf = branches_[branch]->leaves[id / kWidth % kWidth].get();
     return leaf == nullptr ? nullptr : leaf->items[id % kWidth].get();
+  }
+
+  /// The first id from `from` on that is free; behind the last one come those from 0 on.
+  Id free_from(Id from) const {
+    for (Id id = from;; ++id) {
+      if (id > kLastId) id = 0;
+      if (find(id) == nullptr) return id;
+    }
   }
 
   /// Puts an item where there is none. Returns it.

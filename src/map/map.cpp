@@ -47,6 +47,7 @@ MapPoint& Map::mutable_point(PointId id) { return const_cast<MapPoint&>(point(id
 KeyframeId Map::add_keyframe(FramePtr frame, const SE3& world_from_camera, KeyframeId parent) {
   require(frame != nullptr, "a keyframe needs a frame");
   require(parent == kNoId || has_keyframe(parent), "the parent of a keyframe must be in the map");
+  require(next_keyframe_ != kNoId, "the map has given all ids that there are to keyframes");
   Keyframe keyframe;
   keyframe.id = next_keyframe_++;
   keyframe.points.assign(frame->size(), kNoId);
@@ -62,7 +63,8 @@ KeyframeId Map::add_keyframe(FramePtr frame, const SE3& world_from_camera, Keyfr
 PointId Map::add_point(const Eigen::Vector3d& position, KeyframeId keyframe,
                        std::uint32_t keypoint) {
   MapPoint point;
-  const PointId id = point.id = next_point_++;
+  const PointId id = point.id = points_.free_from(next_point_);
+  next_point_ = id + 1;
   point.position = position;
   point.created_by = keyframe;
   point.visible = point.found = 1;
@@ -133,8 +135,8 @@ void Map::remove_keyframe(KeyframeId id) {
   for (const PointId p : std::vector<PointId>(k.points)) {
     if (p != kNoId) remove_observation(p, id);
   }
-  removed_.insert(id,
-                  {k.parent, keyframe(k.parent).world_from_camera.inverse() * k.world_from_camera});
+  removed_.add(id,
+               {k.parent, keyframe(k.parent).world_from_camera.inverse() * k.world_from_camera});
   keyframes_.for_each([&](KeyframeId, Keyframe& other) {
     if (other.parent == id) other.parent = k.parent;
   });
@@ -254,7 +256,7 @@ Map::Anchor Map::anchor_of(KeyframeId id) const {
   require(id < next_keyframe_, "the map never had a keyframe of this id");
   Anchor anchor{id, SE3()};
   while (!has_keyframe(anchor.keyframe)) {
-    const Removed& removed = *removed_.find(anchor.keyframe);
+    const RemovedKeyframes::Place removed = removed_.find(anchor.keyframe);
     anchor.anchor_from_camera = removed.parent_from_camera * anchor.anchor_from_camera;
     anchor.keyframe = removed.parent;
   }

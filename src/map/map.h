@@ -7,6 +7,7 @@
 
 #include "map/id_table.h"
 #include "map/map_types.h"
+#include "map/removed_keyframes.h"
 
 namespace dxslam {
 
@@ -79,14 +80,11 @@ class Map {
     KeyframeId keyframe = kNoId;
     SE3 anchor_from_camera;
   };
-  /// Where `id`, removed or not, hangs now: itself, or the nearest living ancestor.
+  /// Where `id`, removed or not, hangs now: itself, or the nearest living ancestor. Throws
+  /// InputError if that is on the disk (removed_keyframes.h) and cannot be read.
   Anchor anchor_of(KeyframeId id) const;
 
  private:
-  struct Removed {
-    KeyframeId parent = kNoId;
-    SE3 parent_from_camera;
-  };
   Keyframe& mutable_keyframe(KeyframeId id);
   MapPoint& mutable_point(PointId id);
   void change_covisibility(const MapPoint& point, KeyframeId keyframe, int change);
@@ -95,7 +93,7 @@ class Map {
 
   IdTable<Keyframe> keyframes_;
   IdTable<MapPoint> points_;
-  IdTable<Removed> removed_;  // by keyframe id
+  RemovedKeyframes removed_;
   KeyframeId next_keyframe_ = 0;
   PointId next_point_ = 0;
   KeyframeId last_keyframe_ = kNoId;

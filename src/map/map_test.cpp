@@ -98,6 +98,29 @@ TEST(Map, KeepsTheMemoryOfWhatLivesNotOfWhatEverWas) {
   EXPECT_EQ(map.point_ids(), std::vector<PointId>{kept});
 }
 
+// Every tracked frame hangs on a keyframe, and most of these are removed sooner or later.
+TEST(Map, KnowsWhereRemovedKeyframesHangInBoundedMemory) {
+  PointScene scene(20);
+  const FramePtr frame = scene.frame(0, SE3(), 0.0, 1.0);
+  Map map;
+  const KeyframeId root = map.add_keyframe(frame, PointScene::pose(0.1), kNoId);
+  const auto pose = [](int i) { return PointScene::pose(0.001 * (i % 1000)); };
+  const auto turn_over = [&](int first, int last) {
+    for (int i = first; i < last; ++i) map.remove_keyframe(map.add_keyframe(frame, pose(i), root));
+  };
+  turn_over(1, 10000);
+  const std::size_t heap = mallinfo2().uordblks + mallinfo2().hblkhd;
+  turn_over(10000, 60000);
+  EXPECT_LT(mallinfo2().uordblks + mallinfo2().hblkhd, heap + 50000);
+  const Map moved = std::move(map);
+  for (int i = 1; i < 60000; i += 997) {
+    const Map::Anchor anchor = moved.anchor_of(static_cast<KeyframeId>(i));
+    EXPECT_EQ(anchor.keyframe, root);
+    EXPECT_LT(translation_distance(PointScene::pose(0.1) * anchor.anchor_from_camera, pose(i)),
+              1e-12);
+  }
+}
+
 TEST(LocalMap, HoldsThePointsOfCovisibleAndNearbyKeyframes) {
   BuiltMap built(6);
   const LocalMapPtr local = make_local_map(built.map, 5, LocalMapOptions());

@@ -11,7 +11,8 @@
 
 namespace dxslam {
 
-// Ids rise; each is given once and never again.
+// Ids rise. That of a keyframe is given once. That of a removed point comes again after 2^32
+// others: days later, when nobody remembers the point.
 using KeyframeId = std::uint32_t;
 using PointId = std::uint32_t;
 inline constexpr std::uint32_t kNoId = 0xFFFFFFFFU;

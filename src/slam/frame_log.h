@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "io/primitives/scratch_file.h"
 #include "tracking/tracking_types.h"
 
 namespace dxslam {
 
 /// Every frame that was tracked, in order, in bounded memory: the newest are kept there, the others
-/// go to a temporary file without a name, which is gone when this is, however the program ends.
-/// Where no such file can be made or written, they stay in memory. Frames come back to the bit.
+/// go to a temporary file (io/primitives/scratch_file.h). As long as no such file can be made or
+/// written, they stay in memory. Frames come back to the bit.
 /// Belongs to one thread at a time.
 class FrameLog {
  public:
-  /// One or two blocks of `block_frames` are in memory. The file is made in `folder` when the
-  /// second block is full; empty: the system's folder for temporary files.
+  /// One or two blocks of `block_frames` are in memory. `folder` is that of a ScratchFile.
   explicit FrameLog(std::size_t block_frames = 2048, std::string folder = "");
   ~FrameLog();
   FrameLog(const FrameLog&) = delete;
@@ -37,16 +37,14 @@ class FrameLog {
   struct Record;
   using Block = std::vector<Record>;
 
-  void write_oldest();
+  bool write_oldest();
   Block block(std::size_t number) const;
 
   std::size_t block_frames_;
-  std::string folder_;
   std::vector<Block> blocks_;  // those in the file are empty here
   std::size_t written_ = 0;    // blocks in the file
   std::size_t size_ = 0;
-  int file_ = -1;
-  bool usable_ = true;  // the file, as far as is known
+  ScratchFile file_;
 };
 
 }  // namespace dxslam
