@@ -8,19 +8,19 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/text_file.h"
 
 namespace dxslam {
 namespace {
 
 constexpr std::string_view kMagic = "DXNETC01";
+constexpr std::size_t kMostBytes = std::size_t{4} << 30;
 
 struct Header {
   char magic[8];
@@ -62,17 +62,19 @@ std::string ModelCache::path_of(const std::string& key) const {
 
 std::optional<std::string> ModelCache::load(const std::string& key) const {
   if (!usable()) return std::nullopt;
-  std::ifstream file(path_of(key), std::ios::binary);
-  if (!file) return std::nullopt;
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  std::string content = std::move(bytes).str();
-  Header found{};
-  if (content.size() >= sizeof found) {
-    std::memcpy(&found, content.data(), sizeof found);
-    content.erase(0, sizeof found);
-    const Header expected = header_of(key, content);
-    if (std::memcmp(&found, &expected, sizeof found) == 0) return content;
+  const std::string path = path_of(key);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error) && !error) return std::nullopt;
+  try {
+    std::string content = read_file(path, "a compiled network", kMostBytes);
+    Header found{};
+    if (content.size() >= sizeof found) {
+      std::memcpy(&found, content.data(), sizeof found);
+      content.erase(0, sizeof found);
+      const Header expected = header_of(key, content);
+      if (std::memcmp(&found, &expected, sizeof found) == 0) return content;
+    }
+  } catch (const std::exception&) {  // a pipe, say, which nobody must wait for
   }
   remove(key);
   return std::nullopt;

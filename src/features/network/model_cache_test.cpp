@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <thread>
@@ -53,6 +54,23 @@ TEST(ModelCache, RemovesFilesThatWereCutOrAlteredAnywhere) {
   std::filesystem::remove(folder / name);
   std::filesystem::rename(folder / only_file_in(folder.path()), folder / name);
   EXPECT_FALSE(cache.load("key")) << "of another key";
+}
+
+// Opening a pipe would wait for ever.
+TEST(ModelCache, TakesWhatIsNoFileForNothing) {
+  const TestFolder folder;
+  const ModelCache cache(folder.path());
+  cache.store("key", "content");
+  const std::string name = only_file_in(folder.path());
+  std::filesystem::remove(folder / name);
+  ASSERT_EQ(::mkfifo((folder / name).c_str(), 0600), 0);
+  EXPECT_FALSE(cache.load("key"));
+  cache.store("key", "content");
+  EXPECT_EQ(cache.load("key"), "content");
+  std::filesystem::remove(folder / name);
+  std::filesystem::create_directories((folder / name) + "/sub");
+  EXPECT_FALSE(cache.load("key"));
+  cache.store("key", "content");
 }
 
 TEST(ModelCache, IsNotUsedWhereItCannotBeWritten) {

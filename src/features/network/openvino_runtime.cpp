@@ -135,32 +135,49 @@ ov::AnyMap ModelCompiler::properties() const {
   return properties;
 }
 
-std::optional<ov::CompiledModel> ModelCompiler::from_cache(const std::string& key,
-                                                           const ov::AnyMap& properties) const {
-  std::optional<std::string> content = cache_.load(key);
-  if (!content) return std::nullopt;
+// Nothing that the cache does stops a start: whatever fails with it, the model is compiled.
+
+std::string ModelCompiler::key_of(const std::shared_ptr<ov::Model>& model) const {
+  if (!cache_.usable()) return "";
   try {
+    return cache_key(model, *core_, precision_, options_.threads);
+  } catch (const std::exception&) {
+    return "";
+  }
+}
+
+std::optional<ov::InferRequest> ModelCompiler::from_cache(const std::string& key,
+                                                          const ov::AnyMap& properties) const {
+  if (key.empty()) return std::nullopt;
+  try {
+    std::optional<std::string> content = cache_.load(key);
+    if (!content) return std::nullopt;
     std::istringstream stream(std::move(*content));
-    return core_->import_model(stream, "CPU", properties);
+    return core_->import_model(stream, "CPU", properties).create_infer_request();
   } catch (const std::exception&) {  // as another build of OpenVINO wrote it
     cache_.remove(key);
     return std::nullopt;
   }
 }
 
-ov::InferRequest ModelCompiler::compile(const std::shared_ptr<ov::Model>& model,
-                                        const std::string& path) const {
-  const ov::AnyMap settings = properties();
+void ModelCompiler::into_cache(const std::string& key, ov::CompiledModel& compiled) const {
+  if (key.empty()) return;
   try {
-    if (!cache_.usable()) {
-      return core_->compile_model(model, "CPU", settings).create_infer_request();
-    }
-    const std::string key = cache_key(model, *core_, precision_, options_.threads);
-    if (auto compiled = from_cache(key, settings)) return compiled->create_infer_request();
-    ov::CompiledModel compiled = core_->compile_model(model, "CPU", settings);
     std::ostringstream content;
     compiled.export_model(content);
     cache_.store(key, content.str());
+  } catch (const std::exception&) {  // there is no room for a copy, say
+  }
+}
+
+ov::InferRequest ModelCompiler::compile(const std::shared_ptr<ov::Model>& model,
+                                        const std::string& path) const {
+  const ov::AnyMap settings = properties();
+  const std::string key = key_of(model);
+  if (std::optional<ov::InferRequest> request = from_cache(key, settings)) return *request;
+  try {
+    ov::CompiledModel compiled = core_->compile_model(model, "CPU", settings);
+    into_cache(key, compiled);
     return compiled.create_infer_request();
   } catch (const ov::Exception& e) {
     throw InputError(fmt::format("{}: cannot be compiled: {}", path, short_reason(e)));

@@ -41,8 +41,10 @@ class ModelCompiler {
 
  private:
   ov::AnyMap properties() const;
-  std::optional<ov::CompiledModel> from_cache(const std::string& key,
-                                              const ov::AnyMap& properties) const;
+  std::string key_of(const std::shared_ptr<ov::Model>& model) const;
+  std::optional<ov::InferRequest> from_cache(const std::string& key,
+                                             const ov::AnyMap& properties) const;
+  void into_cache(const std::string& key, ov::CompiledModel& compiled) const;
 
   ExtractorOptions options_;
   std::shared_ptr<ov::Core> core_;
