@@ -5,6 +5,7 @@
 #include "optimization/bundle_engine.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -20,6 +21,12 @@ namespace {
 
 constexpr int kDense = 400;
 constexpr int kSparse = 0;
+
+long most_memory_kb() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
 
 /// With and without the kernel, the poses solved for densely and sparsely.
 class BundleEngineTest : public testing::TestWithParam<std::tuple<bool, int>> {
@@ -229,6 +236,42 @@ TEST_P(BundleEngineTest, HandlesAPoseThatSeesAPointTwice) {
 
 INSTANTIATE_TEST_SUITE_P(Kernel, BundleEngineTest,
                          testing::Combine(testing::Bool(), testing::Values(kDense, kSparse)));
+
+// As the whole map of a day: a table of all pairs of poses would take 800 MB.
+TEST(BundleEngine, BoundsItsMemoryForManyPoses) {
+  constexpr int kPoses = 20000;
+  const Camera camera = test_camera();
+  BundleProblem problem;
+  BundleState state;
+  for (int i = 0; i < kPoses; ++i) {
+    const Eigen::Vector3d position(0.1 * i, 0.0, 0.0);
+    state.camera_from_world.emplace_back(Eigen::Quaterniond::Identity(), -position);
+    for (const double y : {-0.2, 0.3}) {
+      const Eigen::Vector3d point = position + Eigen::Vector3d(0.0, y, 2.0);
+      for (int pose = std::max(0, i - 2); pose <= i; ++pose) {
+        BundleProblem::Observation o;
+        o.pose = pose;
+        o.point = static_cast<int>(state.points.size());
+        o.pixel = camera.project(state.camera_from_world[static_cast<std::size_t>(pose)] * point);
+        o.disparity = camera.bf() / 2.0;
+        problem.observations.push_back(o);
+      }
+      state.points.emplace_back(point + Eigen::Vector3d(0.01, 0.0, 0.0));
+    }
+  }
+  BundleOptions options;
+  BundleStage stage;
+  stage.camera = &camera;
+  stage.problem = &problem;
+  stage.options = &options;
+  stage.active.assign(problem.observations.size(), 1);
+  stage.held.assign(kPoses, 0);
+  stage.held[0] = 1;
+  stage.iterations = 1;
+  const long before = most_memory_kb();
+  EXPECT_TRUE(minimise_bundle(stage, state).usable);
+  EXPECT_LT(most_memory_kb() - before, 500000);
+}
 
 TEST(BundleResidual, IsTheProjectionMinusTheMeasurement) {
   const BundleScene scene = make_bundle_scene(BundleSceneOptions());

@@ -51,22 +51,30 @@ DXSLAM_INLINE_KERNEL void subtract_outer(const Block63& s, const Block63& t, Blo
 }
 
 /// Fill-in between all poses that see one point: for each pair of links the block of the lower
-/// triangle. Links without a slot (negative) are of poses that are held. `places` tells by
-/// triangle() where the block is; null if just there.
+/// triangle, all of which there are. Links without a slot (negative) are of poses that are held.
 DXSLAM_INLINE_KERNEL void couple(const int* slots, const Block63* scaled, int count,
-                                 const int* places, Block66* reduced) {
+                                 Block66* reduced) {
   for (int i = 0; i < count; ++i) {
     if (slots[i] < 0) continue;
     const auto a = static_cast<std::size_t>(slots[i]);
     for (int j = 0; j <= i; ++j) {
       if (slots[j] < 0) continue;
       const auto b = static_cast<std::size_t>(slots[j]);
-      std::size_t place = a < b ? triangle(b, a) : triangle(a, b);
-      if (places != nullptr) place = static_cast<std::size_t>(places[place]);
+      const std::size_t place = a < b ? triangle(b, a) : triangle(a, b);
       if (a >= b) subtract_outer(scaled[i], scaled[j], reduced[place]);
       // Both halves where one pose sees the point twice.
       if (a < b || (a == b && i != j)) subtract_outer(scaled[j], scaled[i], reduced[place]);
     }
+  }
+}
+
+/// The part of it in column `column` of the triangle that one link of that pose, `own`, adds.
+/// `places` tells by slot where the block in the column is; it has those of all that are coupled.
+DXSLAM_INLINE_KERNEL void couple_column(int column, const Block63& own, const int* slots,
+                                        const Block63* scaled, int count, const int* places,
+                                        Block66* reduced) {
+  for (int i = 0; i < count; ++i) {
+    if (slots[i] >= column) subtract_outer(scaled[i], own, reduced[places[slots[i]]]);
   }
 }
 
@@ -128,7 +136,6 @@ class SchurSolver {
     for (const Link& link : links_) link_slots_.push_back(link.slot);
     if (poses_.size() > static_cast<std::size_t>(stage.max_dense_poses)) find_couplings();
     if (!sparse_) {
-      places_.clear();
       blocks_.resize(triangle(poses_.size(), 0));
       reduced_.resize(size, size);
     }
@@ -214,43 +221,61 @@ class SchurSolver {
     }
   }
 
-  /// Which pairs of poses see a common point, and where their blocks are; unless they are so many
-  /// that a dense system is solved faster, and not too many for its memory.
+  /// Counting sort of the links with a slot.
+  void sort_links_by_pose() {
+    starts_.assign(poses_.size() + 1, 0);
+    for (const int slot : link_slots_) {
+      if (slot >= 0) ++starts_[static_cast<std::size_t>(slot) + 1];
+    }
+    for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
+    by_pose_.resize(static_cast<std::size_t>(starts_.back()));
+    std::vector<int> next(starts_.begin(), starts_.end() - 1);
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      for (int i = points_[p].first; i < points_[p].last; ++i) {
+        const int slot = link_slots_[static_cast<std::size_t>(i)];
+        if (slot < 0) continue;
+        const int place = next[static_cast<std::size_t>(slot)]++;
+        by_pose_[static_cast<std::size_t>(place)] = {i, static_cast<int>(p)};
+      }
+    }
+  }
+
+  /// Calls visit(link, block of its point) for the links of a slot.
+  template <class Visit>
+  void for_each_link(std::size_t slot, Visit&& visit) const {
+    for (int i = starts_[slot]; i < starts_[slot + 1]; ++i) {
+      const auto& [link, point] = by_pose_[static_cast<std::size_t>(i)];
+      visit(link, points_[static_cast<std::size_t>(point)]);
+    }
+  }
+
+  /// Which pairs of poses see a common point; unless they are so many that a dense system is solved
+  /// faster, and not too many for its memory.
   void find_couplings() {
-    places_.assign(triangle(poses_.size(), 0), -1);
-    for (const PointBlock& block : points_) {
-      for (int i = block.first; i < block.last; ++i) {
-        for (int j = block.first; j < i; ++j) {
-          const int a = link_slots_[static_cast<std::size_t>(i)];
-          const int b = link_slots_[static_cast<std::size_t>(j)];
-          if (a >= 0 && b >= 0) places_[triangle_of(a, b)] = 0;
-        }
-      }
-    }
+    sort_links_by_pose();
     std::vector<std::pair<int, int>> coupled;
+    std::vector<int> met(poses_.size(), -1);  // the last slot that was found to be coupled with it
     for (int a = 0; a < static_cast<int>(poses_.size()); ++a) {
-      for (int b = 0; b < a; ++b) {
-        if (places_[triangle_of(a, b)] == 0) coupled.emplace_back(a, b);
-      }
+      for_each_link(static_cast<std::size_t>(a), [&](int, const PointBlock& block) {
+        for (int i = block.first; i < block.last; ++i) {
+          const int b = link_slots_[static_cast<std::size_t>(i)];
+          if (b < 0 || b >= a || std::exchange(met[static_cast<std::size_t>(b)], a) == a) continue;
+          coupled.emplace_back(a, b);
+        }
+      });
     }
-    const double share = static_cast<double>(coupled.size()) / static_cast<double>(places_.size());
+    const double share =
+        static_cast<double>(coupled.size()) / static_cast<double>(triangle(poses_.size(), 0));
     if (share > stage_.max_coupled_share && poses_.size() <= kMostDensePoses) return;
     sparse_.emplace(6, static_cast<int>(poses_.size()), std::move(coupled));
-    for (int place = 0; place < sparse_->blocks(); ++place) {
-      places_[triangle_of(sparse_->row(place), sparse_->column(place))] = place;
-    }
     blocks_.resize(static_cast<std::size_t>(sparse_->blocks()));
+    places_.assign(poses_.size(), -1);
   }
 
   /// First of the six rows of a slot.
   template <class Slot>
   static Eigen::Index at(Slot slot) {
     return 6 * static_cast<Eigen::Index>(slot);
-  }
-
-  static std::size_t triangle_of(int a, int b) {
-    return triangle(static_cast<std::size_t>(std::max(a, b)),
-                    static_cast<std::size_t>(std::min(a, b)));
   }
 
   const BundleProblem::Observation& observation(const Link& link) const {
@@ -310,8 +335,9 @@ class SchurSolver {
       Matrix6d diagonal = poses_[i].hessian.selfadjointView<Eigen::Lower>();
       diagonal.diagonal() +=
           damping * poses_[i].hessian.diagonal() + Vector6d::Constant(kTinyDiagonal);
-      const std::size_t place = triangle(i, i);
-      Block66& block = blocks_[places_.empty() ? place : static_cast<std::size_t>(places_[place])];
+      const int slot = static_cast<int>(i);
+      Block66& block =
+          blocks_[sparse_ ? static_cast<std::size_t>(sparse_->place(slot, slot)) : triangle(i, i)];
       for (int c = 0; c < 6; ++c) numbers(block.column[c]) = diagonal.col(c);
       pose_step_.segment<6>(at(i)) = -poses_[i].gradient;
     }
@@ -319,6 +345,7 @@ class SchurSolver {
       if (!factorise(block.hessian, damping, block.root)) return false;
       eliminate(block);
     }
+    if (sparse_) couple_sparsely();
     return poses_.empty() || solve_for_poses();
   }
 
@@ -340,9 +367,25 @@ class SchurSolver {
       Block63& scaled = scaled_[static_cast<std::size_t>(i)];
       for (int c = 0; c < 3; ++c) numbers(scaled.column[c]) = s.col(c);
     }
+    if (sparse_) return;
     simd_kernel<couple>()(link_slots_.data() + block.first, scaled_.data() + block.first,
-                          block.last - block.first, places_.empty() ? nullptr : places_.data(),
-                          blocks_.data());
+                          block.last - block.first, blocks_.data());
+  }
+
+  /// Column by column, since a table of all pairs of many poses would fill the memory.
+  void couple_sparsely() {
+    const auto couple_own = simd_kernel<couple_column>();
+    int place = 0;
+    for (int column = 0; column < static_cast<int>(poses_.size()); ++column) {
+      for (; place < sparse_->blocks() && sparse_->column(place) == column; ++place) {
+        places_[static_cast<std::size_t>(sparse_->row(place))] = place;
+      }
+      for_each_link(static_cast<std::size_t>(column), [&](int link, const PointBlock& block) {
+        couple_own(column, scaled_[static_cast<std::size_t>(link)],
+                   link_slots_.data() + block.first, scaled_.data() + block.first,
+                   block.last - block.first, places_.data(), blocks_.data());
+      });
+    }
   }
 
   bool solve_for_poses() {
@@ -418,10 +461,12 @@ class SchurSolver {
   std::vector<Block63> scaled_;   ///< the same times L^-T of the point
   std::vector<int> link_slots_;   ///< slots of the links
   std::vector<Eigen::Matrix3d> rotations_;
-  std::vector<Block66> blocks_;         ///< camera system after the elimination
-  std::vector<int> places_;             ///< of the blocks by triangle(); empty: just there
-  std::optional<SparseBlocks> sparse_;  ///< the same as one matrix, if poses are many
-  Eigen::MatrixXd reduced_;             ///< the same as one matrix if not, lower triangle
+  std::vector<Block66> blocks_;               ///< camera system after the elimination
+  std::optional<SparseBlocks> sparse_;        ///< the same as one matrix, if poses are many
+  std::vector<std::pair<int, int>> by_pose_;  ///< links and their points; if poses are many
+  std::vector<int> starts_;                   ///< one per slot and one more: range in by_pose_
+  std::vector<int> places_;                   ///< in a column, by slot
+  Eigen::MatrixXd reduced_;                   ///< the same as one matrix if not, lower triangle
   Eigen::VectorXd pose_step_;
 };
 
