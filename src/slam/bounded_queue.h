@@ -32,10 +32,11 @@ class BoundedQueue {
     const std::lock_guard lock(mutex_);
     return !closed_ && items_.size() < capacity_;
   }
-  /// Returns false, dropping the item, if there is no room now or the queue is closed.
-  bool try_push(T item) {
-    std::unique_lock lock(mutex_);
-    if (closed_ || items_.size() >= capacity_) return false;
+  /// Takes the item even where there is no room, so that nobody waits: for few and small ones.
+  /// Returns false, dropping it, if the queue is closed.
+  bool push_at_once(T item) {
+    const std::lock_guard lock(mutex_);
+    if (closed_) return false;
     items_.push_back(std::move(item));
     changed_.notify_all();
     return true;

@@ -24,12 +24,14 @@ TEST(BoundedQueue, KeepsOrderAcrossThreads) {
 TEST(BoundedQueue, RefusesWhenFullOrClosed) {
   BoundedQueue<int> queue(1);
   EXPECT_TRUE(queue.has_room());
-  EXPECT_TRUE(queue.try_push(1));
+  EXPECT_TRUE(queue.push(1));
   EXPECT_FALSE(queue.has_room());
-  EXPECT_FALSE(queue.try_push(2));
+  EXPECT_TRUE(queue.push_at_once(2));  // beyond its capacity
   queue.close();
   EXPECT_FALSE(queue.push(3));
+  EXPECT_FALSE(queue.push_at_once(4));
   EXPECT_EQ(queue.pop(), 1);
+  EXPECT_EQ(queue.pop(), 2);
   EXPECT_FALSE(queue.has_room());  // empty, but closed
   EXPECT_EQ(queue.pop(), std::nullopt);
 }

@@ -206,6 +206,8 @@ void System::begin_recording() {
   };
   if (options_.deterministic) {
     task();
+  } else if (live_) {
+    tasks_.push_at_once(std::move(task));  // mapping never holds up tracking
   } else {
     tasks_.push(std::move(task));
   }
