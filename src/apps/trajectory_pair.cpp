@@ -27,8 +27,8 @@ TrajectoryPair load_trajectory_pair(const TrajectoryFiles& files) {
   pair.estimate = std::move(estimate.poses);
   pair.has_stamps = truth.has_stamps() || estimate.has_stamps();
   pair.by_index = !truth.has_stamps() || !estimate.has_stamps();
-  if (!truth.hint.empty()) pair.notes.push_back(files.truth + ": " + truth.hint);
-  if (!estimate.hint.empty()) pair.notes.push_back(files.estimate + ": " + estimate.hint);
+  for (const std::string& hint : truth.hints) pair.notes.push_back(files.truth + ": " + hint);
+  for (const std::string& hint : estimate.hints) pair.notes.push_back(files.estimate + ": " + hint);
   if (!pair.by_index) return pair;
   if (pair.truth.size() != pair.estimate.size()) {
     throw InputError(

@@ -14,7 +14,13 @@ SE3 pose_from_row_major(const double (&values)[16], const std::string& where) {
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const double skewness =
       (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(skewness <= 0.01) || rotation.determinant() < 0.0) {
+  if (rotation.determinant() < 0.0 && skewness <= 0.01) {
+    throw InputError(fmt::format(
+        "{}: rotation part mirrors (its determinant is -1), expected a pose of a right-handed "
+        "camera",
+        where));
+  }
+  if (!(skewness <= 0.01)) {
     throw InputError(fmt::format("{}: rotation part is off orthonormal by {:.3g}, expected a pose",
                                  where, skewness));
   }

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
@@ -32,34 +33,50 @@ StampedPose parse_tum_pose(const std::string& path, const TextRow& row) {
   for (std::size_t i = 0; i < std::size(kColumns); ++i) {
     v[i] = finite_field(path, row, i, kColumns[i]);
   }
-  const Eigen::Quaterniond rotation(v[7], v[4], v[5], v[6]);
+  return {v[0], pose_of_row(path, row, {v[1], v[2], v[3]}, {v[7], v[4], v[5], v[6]})};
+}
+
+SE3 pose_of_row(const std::string& path, const TextRow& row, const Eigen::Vector3d& translation,
+                const Eigen::Quaterniond& rotation) {
   const double length = rotation.norm();
   if (!(std::abs(length - 1.0) <= kQuaternionTolerance)) {
     throw InputError(fmt::format("{}: quaternion of length {:.4g}, expected 1",
                                  at_line(path, row.line), length));
   }
-  return {v[0], SE3(rotation, Eigen::Vector3d(v[1], v[2], v[3]))};
+  return {rotation, translation};
+}
+
+TrajectoryCollector::TrajectoryCollector(std::string path, std::string expected)
+    : path_(std::move(path)), expected_(std::move(expected)) {}
+
+void TrajectoryCollector::add(const TextRow& row, const StampedPose& pose) {
+  if (poses_.size() == limits::kPoses) {
+    throw InputError(fmt::format("{}: more than {} poses, expected less", at_line(path_, row.line),
+                                 limits::kPoses));
+  }
+  if (!poses_.empty() && pose.stamp < poses_.back().stamp) {
+    throw InputError(fmt::format("{}: stamp {:.16g} after {:.16g}, expected rising stamps",
+                                 at_line(path_, row.line), pose.stamp, poses_.back().stamp));
+  }
+  if (!poses_.empty() && pose.stamp == poses_.back().stamp) {
+    ++repeated_;
+  } else {
+    poses_.push_back(pose);
+  }
+}
+
+Trajectory TrajectoryCollector::finish() {
+  if (poses_.empty()) {
+    throw InputError(fmt::format("{}: no pose in it, expected {}", path_, expected_));
+  }
+  return std::move(poses_);
 }
 
 Trajectory read_trajectory(const std::string& path) {
-  Trajectory trajectory;
-  for_each_row(path, kExpected, [&](const TextRow& row) {
-    if (trajectory.size() == limits::kPoses) {
-      throw InputError(fmt::format("{}: more than {} poses, expected less", at_line(path, row.line),
-                                   limits::kPoses));
-    }
-    trajectory.push_back(parse_tum_pose(path, row));
-    const std::size_t n = trajectory.size();
-    if (n > 1 && trajectory[n - 1].stamp < trajectory[n - 2].stamp) {
-      throw InputError(fmt::format("{}: stamp {:.6f} after {:.6f}, expected rising stamps",
-                                   at_line(path, row.line), trajectory[n - 1].stamp,
-                                   trajectory[n - 2].stamp));
-    }
-  });
-  if (trajectory.empty()) {
-    throw InputError(fmt::format("{}: no pose in it, expected {}", path, kExpected));
-  }
-  return trajectory;
+  TrajectoryCollector poses(path, kExpected);
+  for_each_row(path, kExpected,
+               [&](const TextRow& row) { poses.add(row, parse_tum_pose(path, row)); });
+  return poses.finish();
 }
 
 std::string format_pose(const StampedPose& pose) {

@@ -40,7 +40,8 @@ TEST(TrajectoryFile, RefusesBrokenRowsByLine) {
   expect("2 0 nan 0 0 0 0 1\n", {"t.txt:3", "ty is 'nan'", "finite"});
   expect("inf 0 0 0 0 0 0 1\n", {"t.txt:3", "stamp is 'inf'"});
   expect("2 0 x 0 0 0 0 1\n", {"t.txt:3", "ty is 'x'"});
-  expect("0.5 0 0 0 0 0 0 1\n", {"t.txt:3", "0.500000 after 1.000000", "rising"});
+  expect("0.5 0 0 0 0 0 0 1\n", {"t.txt:3", "stamp 0.5 after 1", "rising"});
+  expect("1e300 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n", {"t.txt:4", "after 1e+300,"});
   expect("2 0 0 0 0 0 0 0\n", {"t.txt:3", "length 0", "expected 1"});
   expect("2 0 0 0 1 1 0 1", {"t.txt:3", "length 1.73"});
   expect(std::string("2 0\0 0", 6), {"t.txt:3", "binary"});

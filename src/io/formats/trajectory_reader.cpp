@@ -6,13 +6,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "io/formats/pose_matrix.h"
 #include "io/formats/trajectory_file.h"
-#include "io/primitives/limits.h"
 #include "io/primitives/text_file.h"
 #include "io/recordings/stamp_hint.h"
 
@@ -24,7 +23,6 @@ constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kKittiColumns = 12;
 constexpr std::size_t kEurocColumns = 17;      // of ground truth; 8 of poses alone
 constexpr std::size_t kNanosecondDigits = 16;  // of a stamp, at least
-constexpr double kQuaternionTolerance = 0.01;
 
 bool is_nanoseconds(const std::string& stamp) {
   return stamp.size() >= kNanosecondDigits &&
@@ -65,57 +63,28 @@ StampedPose euroc_pose(const std::string& path, const TextRow& row) {
   for (std::size_t i = 0; i < std::size(kColumns); ++i) {
     v[i] = finite_field(path, row, i, kColumns[i]);
   }
-  const Eigen::Quaterniond rotation(v[4], v[5], v[6], v[7]);
-  if (!(std::abs(rotation.norm() - 1.0) <= kQuaternionTolerance)) {
-    throw InputError(fmt::format("{}: quaternion of length {:.4g}, expected 1",
-                                 at_line(path, row.line), rotation.norm()));
-  }
-  return {1e-9 * v[0], SE3(rotation, Eigen::Vector3d(v[1], v[2], v[3]))};
+  return {1e-9 * v[0], pose_of_row(path, row, {v[1], v[2], v[3]}, {v[4], v[5], v[6], v[7]})};
 }
 
-// The rows of a file, added one after the other.
-class Collector {
- public:
-  Collector(const std::string& path, std::optional<TrajectoryFormat> format)
-      : path_(path), format_(format) {}
+StampedPose pose_of(TrajectoryFormat format, const std::string& path, const TextRow& row,
+                    std::size_t index) {
+  if (format == TrajectoryFormat::kKitti) return kitti_pose(path, row, index);
+  if (format == TrajectoryFormat::kEuroc) return euroc_pose(path, row);
+  return parse_tum_pose(path, row);
+}
 
-  void operator()(const TextRow& row) {
-    if (!format_) format_ = format_of(path_, row);
-    Trajectory& poses = file_.poses;
-    if (poses.size() == limits::kPoses) {
-      throw InputError(fmt::format("{}: more than {} poses, expected less",
-                                   at_line(path_, row.line), limits::kPoses));
-    }
-    poses.push_back(pose_of(row));
-    const std::size_t n = poses.size();
-    if (n < 2 || poses[n - 1].stamp >= poses[n - 2].stamp) return;
-    throw InputError(fmt::format("{}: stamp {:.6f} after {:.6f}, expected rising stamps",
-                                 at_line(path_, row.line), poses[n - 1].stamp, poses[n - 2].stamp));
+// What is odd about the stamps.
+std::vector<std::string> hints_of(const Trajectory& poses, std::size_t repeated) {
+  std::vector<std::string> hints;
+  if (repeated > 0) {
+    hints.push_back(fmt::format("{} of {} poses have the stamp of the one before and are left out",
+                                repeated, poses.size() + repeated));
   }
-
-  TrajectoryFile finish() {
-    if (file_.poses.empty()) {
-      throw InputError(fmt::format("{}: no pose in it, expected {}", path_, kExpected));
-    }
-    file_.format = *format_;
-    if (!file_.has_stamps()) return std::move(file_);
-    std::vector<double> stamps;
-    for (const StampedPose& pose : file_.poses) stamps.push_back(pose.stamp);
-    file_.hint = stamp_hint(stamps);
-    return std::move(file_);
-  }
-
- private:
-  StampedPose pose_of(const TextRow& row) const {
-    if (*format_ == TrajectoryFormat::kKitti) return kitti_pose(path_, row, file_.poses.size());
-    if (*format_ == TrajectoryFormat::kEuroc) return euroc_pose(path_, row);
-    return parse_tum_pose(path_, row);
-  }
-
-  const std::string& path_;
-  std::optional<TrajectoryFormat> format_;
-  TrajectoryFile file_;
-};
+  std::vector<double> stamps;
+  for (const StampedPose& pose : poses) stamps.push_back(pose.stamp);
+  if (std::string hint = stamp_hint(stamps); !hint.empty()) hints.push_back(std::move(hint));
+  return hints;
+}
 
 }  // namespace
 
@@ -135,9 +104,16 @@ TrajectoryFile read_trajectory_file(const std::string& path, const std::string& 
   if (found != names.begin()) {
     wanted = static_cast<TrajectoryFormat>(found - names.begin() - 1);
   }
-  Collector collector(path, wanted);
-  for_each_row(path, kExpected, [&](const TextRow& row) { collector(row); });
-  return collector.finish();
+  TrajectoryCollector poses(path, kExpected);
+  for_each_row(path, kExpected, [&](const TextRow& row) {
+    if (!wanted) wanted = format_of(path, row);
+    poses.add(row, pose_of(*wanted, path, row, poses.size()));
+  });
+  TrajectoryFile file;
+  file.poses = poses.finish();
+  file.format = *wanted;
+  if (file.has_stamps()) file.hints = hints_of(file.poses, poses.repeated());
+  return file;
 }
 
 }  // namespace dxslam

@@ -20,7 +20,7 @@ enum class TrajectoryFormat { kTum, kKitti, kEuroc };
 struct TrajectoryFile {
   Trajectory poses;  ///< where the file has no stamps, these are 0, 1, 2, ...
   TrajectoryFormat format = TrajectoryFormat::kTum;
-  std::string hint;  ///< one sentence, where the stamps do not look like seconds
+  std::vector<std::string> hints;  ///< sentences: stamps that come again or look like no seconds
 
   bool has_stamps() const { return format != TrajectoryFormat::kKitti; }
 };

@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "io/formats/trajectory_reader.h"
 
+#include "io/formats/trajectory_file.h"
+
 #include "io/primitives/test_folder.h"
 
 namespace dxslam {
@@ -67,6 +69,18 @@ TEST(TrajectoryReader, RefusesInOneSentence) {
   expect("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", {"t.txt:2", "rising stamps"});
 }
 
+// A stamp cannot stand for two poses: which of them the truth is compared with was left to chance.
+TEST(TrajectoryReader, LeavesOutStampsThatComeAgain) {
+  const TestFolder folder;
+  const std::string path = folder.write(
+      "t.txt", "1 0 0 0 0 0 0 1\n1 9 0 0 0 0 0 1\n1 8 0 0 0 0 0 1\n1.1 1 0 0 0 0 0 1\n");
+  const TrajectoryFile file = read_trajectory_file(path);
+  ASSERT_EQ(file.poses.size(), 2U);
+  EXPECT_EQ(file.poses[0].world_from_camera.translation().x(), 0.0);
+  EXPECT_THAT(file.hints, testing::ElementsAre(testing::HasSubstr("2 of 4 poses")));
+  EXPECT_EQ(read_trajectory(path).size(), 2U);
+}
+
 TEST(TrajectoryReader, GivesAHintAboutStampsThatAreNoSeconds) {
   const TestFolder folder;
   std::string text;
@@ -75,7 +89,7 @@ TEST(TrajectoryReader, GivesAHintAboutStampsThatAreNoSeconds) {
   }
   const TrajectoryFile file = read_trajectory_file(folder.write("t.txt", text));
   EXPECT_EQ(file.format, TrajectoryFormat::kTum);
-  EXPECT_THAT(file.hint, testing::HasSubstr("nanoseconds"));
+  EXPECT_THAT(file.hints, testing::ElementsAre(testing::HasSubstr("nanoseconds")));
 }
 
 }  // namespace

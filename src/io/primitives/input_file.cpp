@@ -31,6 +31,18 @@ InputFile::InputFile(const std::string& path, const std::string& expected)
 
 InputFile::~InputFile() { ::close(descriptor_); }
 
+std::size_t InputFile::read(char* to, std::size_t bytes) const {
+  std::size_t total = 0;
+  while (total < bytes) {
+    const ssize_t done = ::read(descriptor_, to + total, bytes - total);
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) fail();
+    if (done == 0) break;
+    total += static_cast<std::size_t>(done);
+  }
+  return total;
+}
+
 void InputFile::fail() const {
   const int error = errno;
   if (error == ENOENT) {

@@ -21,6 +21,8 @@ class InputFile {
   int descriptor() const { return descriptor_; }
   /// Bytes, when it was opened.
   std::size_t size() const { return size_; }
+  /// The next bytes, as many as there are up to `bytes`. Throws InputError if they cannot be read.
+  std::size_t read(char* to, std::size_t bytes) const;
   /// Throws the InputError of something that could not be done with it, by errno.
   [[noreturn]] void fail() const;
 

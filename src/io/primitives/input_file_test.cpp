@@ -19,6 +19,9 @@ TEST(InputFile, IsOpenAndKnowsItsSize) {
   char bytes[5] = {};
   EXPECT_EQ(::pread(file.descriptor(), bytes, 5, 0), 5);
   EXPECT_EQ(std::string(bytes, 5), "12345");
+  EXPECT_EQ(file.read(bytes, 2), 2U);
+  EXPECT_EQ(file.read(bytes, 9), 3U);
+  EXPECT_EQ(std::string(bytes, 3), "345");
 }
 
 TEST(InputFile, WhatIsNoFileIsRefusedAtOnce) {

@@ -5,15 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 
 #include "core/error.h"
+#include "io/primitives/input_file.h"
 
 namespace dxslam {
 namespace {
@@ -56,7 +53,12 @@ class RowReader {
 
   void operator()(std::string_view line) {
     if (++row_.line == 1) line = without_byte_order_mark(line);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    while (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (line.find('\r') != std::string_view::npos) {
+      throw InputError(
+          fmt::format("{}: carriage returns inside, expected lines that end with line feeds",
+                      at_line(where_, row_.line)));
+    }
     if (row_.line == 1 && (line.substr(0, 2) == "\xFF\xFE" || line.substr(0, 2) == "\xFE\xFF")) {
       throw InputError(fmt::format("{}: UTF-16 text, expected UTF-8", at_line(where_, row_.line)));
     }
@@ -83,31 +85,9 @@ class RowReader {
                                expected, max_bytes));
 }
 
-// Bytes of a regular file that can be read.
-std::uintmax_t checked_size(const std::string& path, const std::string& expected,
-                            std::size_t max_bytes) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
-    throw InputError(fmt::format("{}: no such file, expected {}", path, expected));
-  }
-  if (error) throw InputError(fmt::format("{}: {}, expected {}", path, error.message(), expected));
-  if (!fs::is_regular_file(status)) {
-    throw InputError(fmt::format("{}: not a regular file, expected {}", path, expected));
-  }
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
-  if (size > max_bytes) refuse_size(path, size, expected, max_bytes);
-  return size;
-}
-
-std::ifstream open_file(const std::string& path, const std::string& expected) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (file) return file;
-  throw InputError(fmt::format("{}: cannot be read{}{}, expected {}", path, errno == 0 ? "" : ": ",
-                               errno == 0 ? "" : std::strerror(errno), expected));
+void require_size(const InputFile& file, const std::string& path, const std::string& expected,
+                  std::size_t max_bytes) {
+  if (file.size() > max_bytes) refuse_size(path, file.size(), expected, max_bytes);
 }
 
 // Letters left out, added, replaced, or swapped with their neighbour.
@@ -133,11 +113,12 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string read_file(const std::string& path, const std::string& expected, std::size_t max_bytes) {
-  const std::uintmax_t size = checked_size(path, expected, max_bytes);
-  std::ifstream file = open_file(path, expected);
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
-    throw InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
+  const InputFile file(path, expected);
+  require_size(file, path, expected, max_bytes);
+  std::string bytes(file.size(), '\0');
+  if (file.read(bytes.data(), bytes.size()) < bytes.size()) {
+    throw InputError(
+        fmt::format("{}: became shorter while it was read, expected {}", path, expected));
   }
   return bytes;
 }
@@ -154,16 +135,16 @@ std::string_view TextRow::rest(std::size_t index) const {
 
 void for_each_row(const std::string& path, const std::string& expected,
                   const std::function<void(const TextRow&)>& take) {
-  checked_size(path, expected, limits::kTextBytes);
-  std::ifstream file = open_file(path, expected);
+  const InputFile file(path, expected);
+  require_size(file, path, expected, limits::kTextBytes);
   RowReader rows(path, take);
   std::vector<char> chunk(kReadAtOnce);
   std::string line;
   int number = 1;
   std::size_t total = 0;
-  while (file) {
-    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-    std::string_view text(chunk.data(), static_cast<std::size_t>(file.gcount()));
+  for (bool more = true; more;) {
+    std::string_view text(chunk.data(), file.read(chunk.data(), chunk.size()));
+    more = text.size() == chunk.size();
     total += text.size();
     if (total > limits::kTextBytes) refuse_size(path, total, expected, limits::kTextBytes);
     for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
@@ -179,7 +160,6 @@ void for_each_row(const std::string& path, const std::string& expected,
                                    at_line(path, number), limits::kTextLineBytes, expected));
     }
   }
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read, expected {}", path, expected));
   rows(line);
 }
 

@@ -3,6 +3,7 @@
 #include "io/primitives/text_file.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "io/primitives/test_folder.h"
 
@@ -76,6 +77,7 @@ TEST(TextFile, NumbersMustBeWhole) {
 TEST(TextFile, RefusesBinaryDataMissingFilesAndFolders) {
   const TestFolder folder;
   expect_input_error([] { parse_table(std::string("a\n\0b", 4), "f"); }, {"f:2", "binary"});
+  expect_input_error([] { parse_table("# head\r1 2\r3 4\r", "f"); }, {"f:1", "carriage returns"});
   expect_input_error(
       [] {
         parse_table(
@@ -86,6 +88,8 @@ TEST(TextFile, RefusesBinaryDataMissingFilesAndFolders) {
       {"f:1", "UTF-16"});
   expect_input_error([&] { read_file(folder / "no", "a list"); }, {"no", "no such file", "a list"});
   expect_input_error([&] { read_file(folder.path(), "a list"); }, {"not a regular file"});
+  std::filesystem::create_symlink("ring", folder / "ring");
+  expect_input_error([&] { read_table(folder / "ring", "a list"); }, {"ring", "symbolic links"});
   folder.write("big", std::string(100, 'x'));
   expect_input_error([&] { read_file(folder / "big", "a list", 99); }, {"100 bytes", "99"});
 }
