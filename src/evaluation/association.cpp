@@ -57,12 +57,12 @@ std::vector<PosePair> associate_or_throw(const Trajectory& truth, const Trajecto
   }
   std::vector<PosePair> pairs = associate(truth, estimate, max_difference);
   if (!pairs.empty()) return pairs;
-  throw InputError(
-      fmt::format("no stamps of the truth ({:.3f} to {:.3f} s) and the estimate ({:.3f} to {:.3f} "
-                  "s) are within "
-                  "{} s, expected two trajectories of the same recording",
-                  truth.front().stamp, truth.back().stamp, estimate.front().stamp,
-                  estimate.back().stamp, max_difference));
+  throw InputError(fmt::format(
+      "no stamps of the truth ({:.13g} to {:.13g} s) and the estimate ({:.13g} to {:.13g} "
+      "s) are within "
+      "{} s, expected two trajectories of the same recording",
+      truth.front().stamp, truth.back().stamp, estimate.front().stamp, estimate.back().stamp,
+      max_difference));
 }
 
 Sim3 align(const std::vector<PosePair>& pairs, Alignment alignment) {

@@ -57,16 +57,17 @@ IndexPairs pairs_by_seconds(const std::vector<PosePair>& poses, double delta, bo
 IndexPairs select_pairs(const std::vector<PosePair>& poses, const RpeOptions& options) {
   const bool frames = options.unit == RpeOptions::Unit::kFrames;
   const bool whole = options.delta == std::floor(options.delta) && options.delta >= 1.0;
-  if (!(options.delta > 0.0 && options.delta < 1e9) || (frames && !whole)) {
-    throw InputError(fmt::format("delta is {}, expected a positive {}", options.delta,
-                                 frames ? "whole number of frames" : "number of seconds"));
+  if (!(options.delta > 0.0 && options.delta <= 1e9) || (frames && !whole)) {
+    throw InputError(fmt::format(
+        "delta is {:g}, expected a positive {}", options.delta,
+        frames ? "whole number of frames, at most 1e9" : "number of seconds, at most 1e9"));
   }
   const IndexPairs pairs =
       frames ? pairs_by_frames(poses.size(), static_cast<std::size_t>(options.delta),
                                options.all_pairs)
              : pairs_by_seconds(poses, options.delta, options.all_pairs);
   if (!pairs.empty()) return pairs;
-  throw InputError(fmt::format("no two of the {} matched poses are {} {} apart", poses.size(),
+  throw InputError(fmt::format("no two of the {} matched poses are {:g} {} apart", poses.size(),
                                options.delta, frames ? "frames" : "seconds"));
 }
 

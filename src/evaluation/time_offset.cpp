@@ -120,11 +120,13 @@ TimeOffset search_time_offset(const Trajectory& truth, const Trajectory& estimat
   const Search search(truth, estimate, options);
   const Fit coarse = search.coarse();
   if (coarse.poses == 0) {
-    throw InputError(fmt::format(
-        "no offset of up to {:g} s between the truth ({:.3f} to {:.3f} s) and the estimate ({:.3f} "
-        "to {:.3f} s) leaves three poses to align, expected two trajectories of the same recording",
-        options.range, truth.front().stamp, truth.back().stamp, estimate.front().stamp,
-        estimate.back().stamp));
+    throw InputError(
+        fmt::format("no offset of up to {:g} s between the truth ({:.13g} to {:.13g} s) and the "
+                    "estimate ({:.13g} "
+                    "to {:.13g} s) leaves three poses to align, expected two trajectories of the "
+                    "same recording",
+                    options.range, truth.front().stamp, truth.back().stamp, estimate.front().stamp,
+                    estimate.back().stamp));
   }
   const Fit best = search.refine(coarse);
   return {best.offset, best.rmse, std::abs(best.offset) >= options.range - kPrecision};

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "io/primitives/lfs_pointer.h"
 #include "io/primitives/text_file.h"
 #include "map_files/crc32c.h"
 #include "map_files/map_limits.h"
@@ -51,7 +52,8 @@ std::uint32_t checksum_of(const FileHeader& header) {
 FileHeader read_header(std::string_view file, std::size_t size, const std::string& where) {
   const std::string_view start = file.substr(0, kMagic.size());
   if (start != kMagic.substr(0, start.size()) || file.empty()) {
-    throw InputError(fmt::format("{}: is no dxslam map, which would begin with DXMAP", where));
+    throw InputError(
+        fmt::format("{}: is no dxslam map, which would begin with DXMAP{}", where, lfs_hint(file)));
   }
   if (file.size() < sizeof(FileHeader)) {
     throw InputError(fmt::format("{}: map file is cut short after {} bytes", where, size));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/primitives/lfs_pointer.h"
 #include "io/primitives/text_file.h"
 
 namespace dxslam {
@@ -256,8 +257,8 @@ VocabularyTree parse_dbow2_text(std::string_view text, const std::string& where)
   }
   const std::string_view head = lines.line().substr(0, 64);
   if (head.find_first_not_of("0123456789 \t\r") != std::string_view::npos) {
-    lines.fail(fmt::format("begins with {}, expected a vocabulary (FBoW or DBoW2 text)",
-                           in_quotes(head.substr(0, 20))));
+    lines.fail(fmt::format("begins with {}, expected a vocabulary (FBoW or DBoW2 text){}",
+                           in_quotes(head.substr(0, 20)), lfs_hint(text)));
   }
   VocabularyTree tree;
   tree.branching = read_head(lines);

@@ -163,6 +163,12 @@ void require_writable(const std::string& path) {
 void make_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
+  std::error_code no_link;
+  const fs::path leads_to = fs::read_symlink(folder, no_link);
+  if (error && !no_link && !fs::exists(folder, no_link)) {
+    throw InputError(fmt::format("output folder {} is a link to {}, which is not there", folder,
+                                 leads_to.string()));
+  }
   if (error) {
     throw InputError(fmt::format("output folder {} cannot be made: {}", folder, error.message()));
   }

@@ -177,6 +177,8 @@ TEST(AtomicFile, TriesATargetWithoutTouchingIt) {
   expect_input_error([&] { require_writable(folder / "no/f"); }, {"no/f", "No such file"});
   expect_input_error([&] { require_writable(folder.path()); }, {"cannot be written"});
   expect_input_error([&] { make_folder(folder / "f"); }, {"f", "cannot be made"});
+  std::filesystem::create_symlink("nowhere", folder / "link");
+  expect_input_error([&] { make_folder(folder / "link"); }, {"link", "to nowhere", "not there"});
   expect_input_error([&] { make_folder(folder / std::string(300, 'n')); }, {"name too long"});
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "io/image_codecs/image_codec.h"
+#include "io/primitives/lfs_pointer.h"
 #include "io/primitives/limits.h"
 #include "io/primitives/text_file.h"
 
@@ -57,8 +58,8 @@ cv::Mat decode(const std::string& path, const std::optional<ExpectedSize>& expec
   const std::string_view start = std::string_view(bytes).substr(0, 16);
   const ImageCodec* codec = find_codec(start);
   if (codec == nullptr) {
-    refuse(path,
-           fmt::format("begins with {}, expected {}", in_quotes(start.substr(0, 8)), kExpected));
+    refuse(path, fmt::format("begins with {}, expected {}{}", in_quotes(start.substr(0, 8)),
+                             kExpected, lfs_hint(bytes)));
   }
   try {
     check_size(codec->inspect(bytes), expected);

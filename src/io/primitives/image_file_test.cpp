@@ -37,6 +37,9 @@ TEST(ImageFile, RefusesWrongTypes) {
   expect_input_error([&] { read_color_image(depth); }, {"d.png", "16-bit", "expected 8-bit"});
   const std::string text = folder.write("t.png", "hello");
   expect_input_error([&] { read_color_image(text); }, {"t.png", "'hello'", "expected a PNG, JPEG"});
+  const std::string lfs =
+      folder.write("l.png", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n");
+  expect_input_error([&] { read_color_image(lfs); }, {"l.png", "git lfs pull"});
   expect_input_error([&] { read_color_image(folder.write("e.png", "")); }, {"e.png", "empty"});
   expect_input_error([&] { read_color_image(folder / "none.png"); }, {"no such file"});
 }

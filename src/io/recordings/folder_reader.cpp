@@ -14,8 +14,6 @@
 namespace dxslam {
 namespace {
 
-constexpr double kFramesASecond = 10.0;
-
 Camera read_intrinsics(const std::string& path, cv::Size size) {
   const std::vector<TextRow> rows = read_table(path, "a 3x3 camera matrix");
   Eigen::Matrix3d k;
@@ -40,7 +38,7 @@ Camera read_intrinsics(const std::string& path, cv::Size size) {
   camera.fy = k(1, 1);
   camera.cx = k(0, 2);
   camera.cy = k(1, 2);
-  camera.fps = kFramesASecond;
+  camera.fps = kDefaultFps;
   camera.prepare(path);
   return camera;
 }

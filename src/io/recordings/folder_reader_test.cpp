@@ -33,6 +33,15 @@ TEST(FolderReader, OrdersFramesByNumber) {
   EXPECT_EQ(sequence->ground_truth()[1].world_from_camera.translation().x(), 9.0);
 }
 
+TEST(FolderReader, SaysThatTheCalibrationMayBeOfAnotherImageSize) {
+  const TestFolder folder;
+  write_sequence(folder);
+  EXPECT_TRUE(open_sequence(folder.path())->facts().notes.empty());
+  folder.write("K.txt", "30 0 16\n0 30 12\n0 0 1\n");  // of images of half the size
+  EXPECT_THAT(open_sequence(folder.path())->facts().notes,
+              testing::ElementsAre(testing::HasSubstr("K.txt, (16, 12), is far from the middle")));
+}
+
 TEST(FolderReader, ReadsImagesWithoutDepthOrPoses) {
   const TestFolder folder;
   write_sequence(folder);

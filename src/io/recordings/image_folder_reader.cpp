@@ -11,11 +11,6 @@
 #include "io/recordings/sequence_formats.h"
 
 namespace dxslam {
-namespace {
-
-constexpr double kFramesASecond = 10.0;
-
-}  // namespace
 
 std::vector<std::filesystem::path> list_images(const std::string& folder,
                                                SequenceListing& listing) {
@@ -47,7 +42,7 @@ Camera made_up_camera(cv::Size size) {
   camera.fx = camera.fy = size.width;
   camera.cx = 0.5 * (size.width - 1);
   camera.cy = 0.5 * (size.height - 1);
-  camera.fps = kFramesASecond;
+  camera.fps = kDefaultFps;
   return camera;
 }
 

@@ -45,7 +45,7 @@ std::vector<double> read_times(const std::string& path) {
     if (row.fields.size() != 1) refuse_columns(path, row, "1 (time)");
     const double time = finite_field(path, row, 0, "time");
     if (!times.empty() && time < times.back()) {
-      throw InputError(fmt::format("{}: time {:.6f} after {:.6f}, expected rising times",
+      throw InputError(fmt::format("{}: time {:.16g} after {:.16g}, expected rising times",
                                    at_line(path, row.line), time, times.back()));
     }
     if (times.size() == limits::kFrames) {
@@ -147,7 +147,7 @@ SequenceListing list_kitti(const std::string& folder, const SequenceOptions& opt
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (i > 0 && times[i] == times[i - 1]) {
       listing.skipped.push_back(
-          {listing.frames.size(), fmt::format("{}: has the time of the image before, {:.6f} s",
+          {listing.frames.size(), fmt::format("{}: has the time of the image before, {:.16g} s",
                                               images[i].string(), times[i])});
     } else {
       listing.frames.push_back({times[i], images[i].string(), {}});

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "io/primitives/image_file.h"
@@ -17,6 +18,7 @@ constexpr std::size_t kProbed = 3;  // frames decoded at opening
 constexpr std::size_t kProbeAttempts = 10;
 constexpr double kNearestScene = 0.05;    // metres, least plausible median depth
 constexpr double kFarthestScene = 30.0;   // metres, largest plausible median depth
+constexpr double kOffCentre = 0.2;        // share of the image's side
 constexpr double kEnoughReadings = 0.01;  // share of pixels below which a median says nothing
 
 class ListedSequence : public RgbdSequence {
@@ -127,10 +129,23 @@ void note_on_stamps(SequenceListing& listing) {
   const Trajectory& truth = listing.ground_truth;
   if (truth.empty()) return;
   if (truth.front().stamp <= stamps.back() && truth.back().stamp >= stamps.front()) return;
+  listing.notes.push_back(
+      fmt::format("the true trajectory ({:.13g} to {:.13g} s) and the images ({:.13g} to {:.13g} "
+                  "s) have no time "
+                  "in common",
+                  truth.front().stamp, truth.back().stamp, stamps.front(), stamps.back()));
+}
+
+// A principal point in a corner is that of images of another size, or of a part of them.
+void note_on_camera(SequenceListing& listing) {
+  const Camera& c = listing.camera;
+  const double x = c.cx / c.width;
+  const double y = c.cy / c.height;
+  if (std::abs(x - 0.5) <= kOffCentre && std::abs(y - 0.5) <= kOffCentre) return;
   listing.notes.push_back(fmt::format(
-      "the true trajectory ({:.3f} to {:.3f} s) and the images ({:.3f} to {:.3f} s) have no time "
-      "in common",
-      truth.front().stamp, truth.back().stamp, stamps.front(), stamps.back()));
+      "the principal point of {}, ({:g}, {:g}), is far from the middle of images of {}x{}: is the "
+      "calibration that of another image size?",
+      listing.calibration_source, c.cx, c.cy, c.width, c.height));
 }
 
 }  // namespace
@@ -139,6 +154,7 @@ std::unique_ptr<RgbdSequence> make_sequence(SequenceListing listing) {
   require(!listing.frames.empty(), "a sequence must have frames");
   listing.camera.prepare(listing.calibration_source);
   note_on_stamps(listing);
+  note_on_camera(listing);
   auto sequence = std::make_unique<ListedSequence>(std::move(listing));
   sequence->probe();
   return sequence;

@@ -26,6 +26,9 @@ bool has_seven_scenes_frames(const std::string& folder);
 
 // What the readers share.
 
+/// Images a second where nothing says when they were taken.
+inline constexpr double kDefaultFps = 10.0;
+
 /// "folder/name".
 std::string in_folder(const std::string& folder, const std::string& name);
 /// Last part of the path, also of one that ends with '/'.

@@ -17,7 +17,7 @@ namespace dxslam {
 namespace {
 
 constexpr double kDepthFocalLength = 585.0;  // pixels, of the Kinect's depth camera
-constexpr double kFramesASecond = 30.0;
+constexpr double kFps = 30.0;
 constexpr std::uint16_t kInvalidDepth = 65535;  // besides 0
 constexpr std::size_t kNumberDigits = 6;
 constexpr std::string_view kPrefix = "frame-";
@@ -129,7 +129,7 @@ SequenceListing list_seven_scenes(const std::string& folder, const SequenceOptio
   }
   std::size_t broken_poses = 0;
   for (const auto& [number, color] : find_frames(folder, listing)) {
-    const double stamp = number / kFramesASecond;
+    const double stamp = number / kFps;
     const std::string stem = in_folder(folder, color.substr(0, kPrefix.size() + kNumberDigits));
     listing.frames.push_back({stamp, in_folder(folder, color), stem + ".depth.png"});
     const std::string pose = stem + ".pose.txt";

@@ -89,7 +89,7 @@ TEST(SevenScenesReader, GoesOnWithoutBrokenPoses) {
   expect("1 0 0 0\n0 1 0 0\n0 0 1 0\n", {"frame-000003.pose.txt", "12 numbers", "4x4"});
   expect("1 0 0 0\n0 1 0 nan\n0 0 1 0\n0 0 0 1\n", {"frame-000003.pose.txt:2", "'nan'"});
   expect("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", {"frame-000003.pose.txt", "orthonormal"});
-  expect("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n", {"frame-000003.pose.txt", "orthonormal"});
+  expect("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n", {"frame-000003.pose.txt", "mirrors"});
   expect("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 1 1\n", {"frame-000003.pose.txt", "last row"});
   std::filesystem::remove(folder / "frame-000003.pose.txt");
   EXPECT_EQ(open_sequence(folder.path())->ground_truth().size(), 2U);

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/primitives/text_file.h"
 #include "io/recordings/sequence_formats.h"
+#include "io/recordings/stamp_hint.h"
 
 namespace dxslam {
 namespace {
@@ -128,10 +129,10 @@ bool goes_on(const std::string& path, int line, double stamp, StampedList& list)
                        [](const StampedFile& item, double value) { return item.stamp < value; });
   if (same->stamp == stamp) {
     list.repeated.push_back(
-        {stamp, fmt::format("{}: stamp {:.6f} was given before", at_line(path, line), stamp)});
+        {stamp, fmt::format("{}: stamp {:.16g} was given before", at_line(path, line), stamp)});
     return false;
   }
-  throw InputError(fmt::format("{}: stamp {:.6f} after {:.6f}, expected rising stamps",
+  throw InputError(fmt::format("{}: stamp {:.16g} after {:.16g}, expected rising stamps",
                                at_line(path, line), stamp, list.files.back().stamp));
 }
 
@@ -190,6 +191,14 @@ const StampedFile& nearest(const std::vector<StampedFile>& list, double stamp) {
   return *after;
 }
 
+// What explains that no stamp has a partner.
+std::string unit_hint(const std::string& name, const StampedList& list) {
+  std::vector<double> stamps;
+  for (const StampedFile& file : list.files) stamps.push_back(file.stamp);
+  const std::string hint = stamp_hint(stamps);
+  return hint.empty() ? hint : fmt::format("; {}: {}", name, hint);
+}
+
 }  // namespace
 
 void associate_lists(const std::string& folder, const std::string& color_list,
@@ -211,20 +220,21 @@ void associate_lists(const std::string& folder, const std::string& color_list,
     } else {
       listing.skipped.push_back(
           {listing.frames.size(),
-           fmt::format("{}: nearest depth image is {:.3f} s away, expected at most {} s",
+           fmt::format("{}: nearest depth image is {:.4g} s away, expected at most {} s",
                        color.file, difference, options.max_association_s)});
     }
   }
   if (listing.frames.empty()) {
     throw InputError(fmt::format(
-        "{}: no image of {} has one of {} within {} s (nearest {:.3f} s), expected lists of the "
-        "same recording",
-        folder, color_list, depth_list, options.max_association_s, least));
+        "{}: no image of {} has one of {} within {} s (nearest {:.4g} s), expected lists of the "
+        "same recording{}{}",
+        folder, color_list, depth_list, options.max_association_s, least,
+        unit_hint(color_list, colors), unit_hint(depth_list, depths)));
   }
   skip_repeated(colors.repeated, listing);
   if (!depths.repeated.empty()) {
-    listing.notes.push_back(fmt::format("{} lines of {} were left out; the first, {}",
-                                        depths.repeated.size(), depth_list,
+    listing.notes.push_back(fmt::format("lines of {} that were left out: {}; the first, {}",
+                                        depth_list, depths.repeated.size(),
                                         depths.repeated.front().reason));
   }
 }
