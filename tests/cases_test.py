@@ -65,7 +65,7 @@ EXPECTED = {
                                                "relocalize, SIGINT", "synth, SIGINT")]
         + ["map of lifelong: True", "stopped before its first frame: exit 5"], []),
     "17-numbers-on-the-command-line": (
-        ["--max-frames -1: exit 2", "'-1' is no whole number", "'rnu' is no command", "run[?]",
+        ["--max-frames -1: exit 2", "'-1' is no whole number", "'rnu' is no command, expected run; see",
          "a mistyped command: exit 2", r"--out '' \(an unset variable\): exit 2"], ["0{20}"]),
     "18-output-that-cannot-be-written": (
         ["eval ate > /dev/full: exit 3", "config dump > /dev/full: exit 3",

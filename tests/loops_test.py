@@ -83,7 +83,10 @@ class Loops(Recorded):
         self.assertEqual(json.loads((out / "summary.json").read_text())["queries"], FRAMES // 2)
 
     def test_says_what_does_not_fit(self):
-        self.refuse(self.loops(method="orb-bag"), "'orb-bag'", "hf-bow-global")
+        done = self.loops(method="orb-bag")
+        self.assertEqual(done.returncode, BAD_USAGE, done.stderr)
+        for text in ("'orb-bag'", "hf-bow-global"):
+            self.assertIn(text, done.stderr)
         self.refuse(self.loops(words=self.folder / "none.fbow"), "none.fbow")
         matrix = self.folder / "small.txt"
         matrix.write_text("0 0\n1 0\n")

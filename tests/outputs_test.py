@@ -154,8 +154,10 @@ class LastResults(Outputs):
         before = {name: (self.out / name).read_bytes() for name in names(self.out)}
         bad = self.folder / "bad.dxmap"
         bad.write_text("x")
+        both = self.folder / "both.yaml"
+        both.write_text("mode: both\n")
         for wrong in (["--map-in", bad], ["--map-in", self.folder / "none.dxmap"],
-                      ["--vocabulary", bad], ["--features", "nosuch"], ["--mode", "both"],
+                      ["--vocabulary", bad], ["--features", "nosuch.yaml"], ["--config", both],
                       ["--map-out", self.folder / "missing" / "m.dxmap"],
                       ["--config", self.folder / "none.yaml"]):
             with self.subTest(wrong):
@@ -323,7 +325,7 @@ class InnerErrors(Outputs):
             self.out / "trajectory.txt", "run", self.recording, "--realtime", "--map-out",
             self.folder / "m.dxmap")
         summary = self.summary()
-        self.assertIn("frames were skipped; the first", said)
+        self.assertIn("frames that were skipped: ", said)
         self.assertGreater(len(summary["skipped_frames"]), 0)
         self.assertIsNone(summary["error"])
         self.assertEqual(names(self.out), RESULTS)

@@ -418,7 +418,7 @@ class CommandLine(Made):
         self.refuse("features", "a.png", "--max-keypoints", "-5", names=["-5"])
         self.refuse("vocab", "train", self.recording, "--out", "v", "--words", "-1", names=["-1"])
         self.refuse("lifelong", self.recording, "--out", "x", "--low-light-in", "0")
-        self.refuse("loops", self.recording, "--method", "bow", "--ground-truth", "poses",
+        self.refuse("loops", self.recording, "--method", "orb-bow", "--ground-truth", "poses",
                     "--window", "-1", names=["--window"])
         self.refuse("map", "export", "m", "--ply", "p", "--component", "-1", names=["-1"])
 
@@ -426,7 +426,32 @@ class CommandLine(Made):
         self.refuse("rnu", self.recording, names=["'rnu'", "run"])
         self.refuse("map", "chekc", "m", names=["'chekc'", "check"])
         self.refuse("eval", "xyzzy", names=["'xyzzy'", "ate", "rpe"])
-        self.refuse("run", self.recording, "--strid", "2", names=["--strid"])
+        self.refuse("run", self.recording, "--strid", "2", names=["'--strid'", "expected --stride;"])
+        self.refuse("run", self.recording, "--max-frame", "3", names=["'--max-frame'", "--max-frames;"])
+        self.refuse("synth", self.folder / "s", "--frames", "1", "--frames", "2",
+                    names=["--frames: given more than once"])
+        self.refuse("--vresion", names=["'--vresion'", "expected --version;"])
+        self.refuse("eval", "foo", names=["'foo'", "see dxslam eval --help"])
+        self.refuse("run", self.recording, "another", names=["'another'", "too many"])
+
+    def test_a_mistyped_choice(self):
+        map_, run = self.folder / "m", ["run", self.recording]
+        for *words, option, value in (
+                [*run, "--mode", "foo"], [*run, "--format", "foo"], [*run, "--features", "foo"],
+                [*run, "--features", "foo+brief"], ["lifelong", self.recording, "--out", map_, "--mode", "foo"],
+                ["relocalize", map_, self.recording, "--format", "foo"],
+                ["relocalize", map_, self.recording, "--features", "foo"],
+                ["bench", "features", self.recording, "--features", "foo"],
+                ["features", "a.png", "--features", "foo"], ["match", "a", "b", "--features", "foo"],
+                ["vocab", "train", self.recording, "--out", map_, "--features", "foo"],
+                ["loops", "x", "--ground-truth", "poses", "--method", "foo"],
+                ["loops", "x", "--method", "orb-bow", "--ground-truth", "poses", "--eye", "foo"],
+                ["synth", map_, "--scene", "foo"], ["synth", map_, "--factor", "foo"],
+                ["synth", map_, "--factor", "people=foo"], ["config", "dump", "--camera", "foo"],
+                ["eval", "ate", "a", "b", "--format", "foo"], ["eval", "ate", "a", "b", "--plot", "foo.png"],
+                ["eval", "openloris", "a", "b", "--plot", "foo.PDF"]):
+            self.refuse(*words, option, value, names=[option, "foo"])
+        self.refuse(*run, "--mode", "localisation", names=["expected localization;"])
 
     def test_an_empty_value_is_an_unset_variable(self):
         for words in (["run", self.recording, "--out"], ["run", self.recording, "--map-out"],
@@ -438,9 +463,10 @@ class CommandLine(Made):
                       ["map", "info", "m", "--json"], ["map", "export", "m", "--ply"],
                       ["features", "i", "--npz"], ["match", "a", "b", "--out"],
                       ["vocab", "train", "x", "--out"], ["vocab", "convert", "a"], ["synth"],
-                      ["loops", "x", "--method", "bow", "--ground-truth", "poses", "--out"]):
+                      ["loops", "x", "--method", "orb-bow", "--ground-truth", "poses", "--out"]):
             self.refuse(*words, "", names=["empty"])
         self.refuse("run", self.recording, "--out=")
+        self.refuse("run", self.recording, "--low-light=", names=["--low-light", "empty"])
 
     def test_names_beyond_the_longest(self):
         name = "n" * 300

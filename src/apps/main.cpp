@@ -31,13 +31,14 @@ void add_commands(CLI::App& app) {
 }
 
 // Help, or what is wrong with the command line.
-int say_usage(const CLI::App& app, const CLI::ParseError& error) {
+int say_usage(const CLI::App& app, int argc, const char* const* argv,
+              const CLI::ParseError& error) {
   std::ostringstream out;
   std::ostringstream unused;
   const int code = app.exit(error, out, unused);
   print_text(out.str());
   if (code == 0) return kSuccess;
-  warn("{}; see {} --help", error.what(), command_line_of(app));
+  warn("{}", usage_problem(app, argc, argv, error));
   return kBadUsage;
 }
 
@@ -46,12 +47,12 @@ int run_command(int argc, char** argv) {
   add_commands(app);
   refuse_empty_values(app);
   try {
-    require_known_commands(app, argc, argv);
+    require_known_words(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {
     return e.get_exit_code();
   } catch (const CLI::ParseError& e) {
-    return say_usage(app, e);
+    return say_usage(app, argc, argv, e);
   } catch (const InputError& e) {
     warn("{}", e.what());
     return kBadInput;

@@ -25,12 +25,15 @@ void check_map_settings(const RunSettings& settings, const SystemOptions& option
 
 void add_run_options(CLI::App& command, RunSettings& settings) {
   command.add_option("--format", settings.reader.format, "auto, tum, 7scenes, openloris or folder")
+      ->check(recording_format())
       ->capture_default_str();
   command.add_option("--calibration", settings.reader.calibration,
                      "Camera preset or YAML file (default: by format)");
   command.add_option("--config", settings.config, "YAML file; see `dxslam config dump`");
-  command.add_option("--features", settings.features, "Extractor name or model manifest");
-  command.add_option("--mode", settings.mode, "slam, or localization in the map of --map-in");
+  command.add_option("--features", settings.features, "Extractor name or model manifest")
+      ->check(extractor_name());
+  command.add_option("--mode", settings.mode, "slam, or localization in the map of --map-in")
+      ->check(one_of({"slam", "localization"}));
   command.add_option("--map-in", settings.map_in, "Go on with this map");
   command.add_option("--map-out", settings.map_out, "Save the map here");
   command

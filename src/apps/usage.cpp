@@ -4,14 +4,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "features/extractor_factory.h"
 #include "io/primitives/text_file.h"
+#include "io/recordings/sequence_reader.h"
 
 namespace dxslam::apps {
 namespace {
@@ -37,7 +43,92 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
+const CLI::Option* find_option(const CLI::App& app, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->check_name(name)) return option;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+CLI::ParseError unknown_word(const std::string& word, const char* what,
+                             const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(word.substr(0, word.find('=')), names);
+  std::string text = fmt::format("{} is no {}", in_quotes(word), what);
+  if (!nearest.empty()) {
+    text += fmt::format(", expected {}", nearest);
+  } else if (std::string_view(what) == "command") {
+    text += fmt::format(", expected one of {}", fmt::join(names, ", "));
+  }
+  return {text, CLI::ExitCodes::InvalidError};
+}
+
+// The first of the words left over that looks like an option, or else the first. CLI11 may give
+// them in any order.
+std::string first_unknown(const std::vector<std::string>& words, const CLI::App& command) {
+  for (const std::string& word : words) {
+    if (word.size() > 1 && word.front() == '-' && find_option(command, word) == nullptr)
+      return word;
+  }
+  return words.empty() ? std::string() : words.front();
+}
+
 }  // namespace
+
+CLI::Validator one_of(std::vector<std::string> words) {
+  return {[words = std::move(words)](std::string& text) {
+            if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+            const std::string nearest = nearest_name(text, words);
+            return nearest.empty()
+                       ? fmt::format("{} is none of {}", in_quotes(text), fmt::join(words, ", "))
+                       : fmt::format("{} is no choice, expected {}", in_quotes(text), nearest);
+          },
+          "", ""};
+}
+
+CLI::Validator accepted_by(std::function<void(const std::string&)> take) {
+  return {[take = std::move(take)](std::string& text) {
+            try {
+              take(text);
+              return std::string();
+            } catch (const InputError& error) {
+              return std::string(error.what());
+            }
+          },
+          "", ""};
+}
+
+CLI::Validator svg_file() {
+  return {[](std::string& text) {
+            static const std::vector<std::string> others = {".png", ".jpg",  ".jpeg", ".pdf",
+                                                            ".ps",  ".eps",  ".gif",  ".bmp",
+                                                            ".tif", ".tiff", ".webp"};
+            std::string ending = std::filesystem::path(text).extension().string();
+            std::transform(ending.begin(), ending.end(), ending.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+            if (std::find(others.begin(), others.end(), ending) == others.end())
+              return std::string();
+            return fmt::format("{}: pictures are written as SVG, expected a name that ends in .svg",
+                               in_quotes(text));
+          },
+          "", ""};
+}
+
+CLI::Validator recording_format() {
+  std::vector<std::string> names = sequence_formats();
+  names.insert(names.begin(), "auto");
+  return one_of(std::move(names));
+}
+
+CLI::Validator extractor_name() { return accepted_by(require_known_extractor); }
 
 CLI::Validator whole_number(std::int64_t min, std::int64_t max) {
   return {[min, max](std::string& text) {
@@ -69,28 +160,51 @@ void refuse_empty_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
 }
 
-void require_known_commands(const CLI::App& app, int argc, const char* const* argv) {
+void require_known_words(const CLI::App& app, int argc, const char* const* argv) {
   const CLI::App* at = &app;
   for (int i = 1; i < argc && at->get_require_subcommand_min() > 0; ++i) {
     const std::string word = argv[i];
-    if (!word.empty() && word.front() == '-') return;  // help, or an error that names itself
-    const CLI::App* const command = find_command(*at, word);
-    if (command == nullptr) {
-      const std::vector<std::string> names = command_names(*at);
-      const std::string nearest = nearest_name(word, names);
-      throw CLI::ParseError(
-          fmt::format("{} is no command, expected {}", in_quotes(word),
-                      nearest.empty() ? fmt::format("one of {}", fmt::join(names, ", "))
-                                      : fmt::format("{}?", nearest)),
-          CLI::ExitCodes::ExtrasError);
+    if (!word.empty() && word.front() == '-') {
+      if (find_option(*at, word) != nullptr) return;  // help or the version
+      throw unknown_word(word, "option", option_names(*at));
     }
+    const CLI::App* const command = find_command(*at, word);
+    if (command == nullptr) throw unknown_word(word, "command", command_names(*at));
     at = command;
+  }
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--") return;
+    if (word.size() < 4 || !word.starts_with("--") || !word.ends_with('=')) continue;
+    throw CLI::ParseError(fmt::format("{}: its value is empty", word.substr(0, word.size() - 1)),
+                          CLI::ExitCodes::ValidationError);
   }
 }
 
-std::string command_line_of(const CLI::App& app) {
-  const std::vector<CLI::App*> used = static_cast<const CLI::App&>(app).get_subcommands();
-  return used.empty() ? app.get_name() : app.get_name() + " " + command_line_of(*used.back());
+std::string usage_problem(const CLI::App& app, int argc, const char* const* argv,
+                          const CLI::ParseError& error) {
+  // By the words, as an error may come before they are read.
+  const CLI::App* command = &app;
+  std::string help = app.get_name();
+  for (int i = 1; i < argc; ++i) {
+    const CLI::App* const next = find_command(*command, argv[i]);
+    if (next == nullptr) break;
+    command = next;
+    help += " " + next->get_name();
+  }
+  std::string problem = error.what();
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ArgumentMismatch) &&
+      problem.find(": At Most 1 required") != std::string::npos) {
+    problem = problem.substr(0, problem.find(':')) + ": given more than once";
+  }
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
+    const std::vector<std::string> words = app.remaining(true);
+    if (const std::string word = first_unknown(words, *command); !word.empty()) {
+      problem = word.front() == '-' ? unknown_word(word, "option", option_names(*command)).what()
+                                    : fmt::format("{} is one argument too many", in_quotes(word));
+    }
+  }
+  return fmt::format("{}; see {} --help", problem, help);
 }
 
 }  // namespace dxslam::apps

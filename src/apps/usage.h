@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "core/error.h"
 #include "core/options.h"
@@ -48,17 +50,29 @@ CLI::Validator range_of(const char* field) {
                       : number(finder.range->min, finder.range->max);
 }
 
+/// One of these words.
+CLI::Validator one_of(std::vector<std::string> words);
+/// What `take` takes without an InputError, whose sentence is shown otherwise.
+CLI::Validator accepted_by(std::function<void(const std::string&)> take);
+/// A file for a picture, which is written as SVG whatever its name says.
+CLI::Validator svg_file();
+/// auto, or a format of recordings.
+CLI::Validator recording_format();
+/// The name of an extractor, or a manifest (*.yaml).
+CLI::Validator extractor_name();
+
 /// The gain of the low-light model, as an option.
 CLI::Validator low_light_gain();
 
 /// No option of the program takes an empty value: it is what an unset variable of a shell gives.
 void refuse_empty_values(CLI::App& app);
 
-/// Throws CLI::ParseError, naming the word and the nearest command, for a word that is no command
-/// where one is due.
-void require_known_commands(const CLI::App& app, int argc, const char* const* argv);
+/// Throws CLI::ParseError, naming the word and the nearest that is known, for a word that is no
+/// command where one is due, and for an option that is followed by "=" and nothing.
+void require_known_words(const CLI::App& app, int argc, const char* const* argv);
 
-/// What help belongs to: "dxslam run" after that command was read.
-std::string command_line_of(const CLI::App& app);
+/// What is wrong with the command line after `app` did not take it, and which help tells more.
+std::string usage_problem(const CLI::App& app, int argc, const char* const* argv,
+                          const CLI::ParseError& error);
 
 }  // namespace dxslam::apps

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 #include "core/error.h"
 #include "features/data_directory.h"
@@ -21,6 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kShipped = "hfnet";
+constexpr const char* kUpright = "+brief";
+constexpr const char* kTurned = "+rbrief";
 
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -36,17 +39,27 @@ std::string find_manifest(const std::string& name) {
   return fs::exists(described) ? described.string() : std::string();
 }
 
+[[noreturn]] void refuse_name(const std::string& name) {
+  throw InputError(
+      fmt::format("unknown features `{}`, expected a manifest (*.yaml) or one of: "
+                  "{}; each also with +brief or +rbrief",
+                  name, fmt::join(known_extractors(), ", ")));
+}
+
+/// The suffix for BRIEF descriptors that a name ends with; "" without.
+const char* brief_suffix(const std::string& name) {
+  for (const char* suffix : {kUpright, kTurned}) {
+    if (ends_with(name, suffix)) return suffix;
+  }
+  return "";
+}
+
 std::unique_ptr<FeatureExtractor> make_plain(const std::string& name,
                                              const ExtractorOptions& options) {
   if (name == "orb") return make_orb_extractor(options);
   if (name == "opencv_orb") return make_opencv_orb_extractor(options);
   const std::string manifest = find_manifest(name);
-  if (manifest.empty()) {
-    throw InputError(
-        fmt::format("unknown features `{}`, expected a manifest (*.yaml) or one of: "
-                    "{}; each also with +brief or +rbrief",
-                    name, fmt::join(known_extractors(), ", ")));
-  }
+  if (manifest.empty()) refuse_name(name);
   return make_network_extractor(read_model_manifest(manifest), options);
 }
 
@@ -68,13 +81,17 @@ bool is_available(const std::string& name) {
 std::unique_ptr<FeatureExtractor> make_extractor(const std::string& name_or_manifest,
                                                  const ExtractorOptions& options) {
   validate_options("features", options);
-  for (const bool oriented : {false, true}) {
-    const std::string suffix = oriented ? "+rbrief" : "+brief";
-    if (!ends_with(name_or_manifest, suffix)) continue;
-    const auto detector = name_or_manifest.substr(0, name_or_manifest.size() - suffix.size());
-    return make_brief_extractor(make_plain(detector, options), oriented);
-  }
-  return make_plain(name_or_manifest, options);
+  const std::string_view suffix = brief_suffix(name_or_manifest);
+  if (suffix.empty()) return make_plain(name_or_manifest, options);
+  const auto detector = name_or_manifest.substr(0, name_or_manifest.size() - suffix.size());
+  return make_brief_extractor(make_plain(detector, options), suffix == kTurned);
+}
+
+void require_known_extractor(const std::string& name_or_manifest) {
+  const std::string_view suffix = brief_suffix(name_or_manifest);
+  const std::string name = name_or_manifest.substr(0, name_or_manifest.size() - suffix.size());
+  if (name == "orb" || name == "opencv_orb") return;
+  if (find_manifest(name).empty()) refuse_name(name);
 }
 
 ExtractorChoice choose_extractor() {

@@ -22,6 +22,9 @@ namespace dxslam {
 std::unique_ptr<FeatureExtractor> make_extractor(const std::string& name_or_manifest,
                                                  const ExtractorOptions& options = {});
 
+/// Throws InputError for a name that make_extractor() does not know; paths are not looked at.
+void require_known_extractor(const std::string& name_or_manifest);
+
 /// What is taken where the user names no features.
 struct ExtractorChoice {
   std::string name;

@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/usage.h"
 #include "io/calibration/calibration.h"
 #include "io/formats/options_yaml.h"
 #include "slam/system_options.h"
@@ -49,6 +50,7 @@ void add_config_command(CLI::App& app) {
   command
       ->add_option("--camera", arguments->camera,
                    fmt::format("camera preset: {}", fmt::join(camera_preset_names(), ", ")))
+      ->check(one_of(camera_preset_names()))
       ->option_text("NAME");
   command->callback([arguments] { dump(*arguments); });
 }

@@ -90,9 +90,23 @@ std::optional<double> correct_clock(const EvalArguments& arguments, TrajectoryPa
   return found.offset;
 }
 
+// The offset was found in the interpolated truth, so stamps may lie between its poses after all.
+void require_pairs(const EvalArguments& arguments, const TrajectoryPair& pair, double offset) {
+  const double limit = max_difference(arguments);
+  if (!associate(pair.truth, pair.estimate, limit).empty()) return;
+  for (double wider = 2.0 * limit; wider <= 100.0; wider *= 2.0) {
+    if (associate(pair.truth, pair.estimate, wider).empty()) continue;
+    throw InputError(fmt::format(
+        "with the offset of {:+.4f} s no stamps are within {:g} s, but some are within {:g} s, "
+        "expected --max-difference {:g}",
+        offset, limit, wider, wider));
+  }
+}
+
 void evaluate_ate_command(const EvalArguments& arguments) {
   TrajectoryPair pair = load_pair(arguments);
   const std::optional<double> offset = correct_clock(arguments, pair);
+  if (offset) require_pairs(arguments, pair, *offset);
   const Trajectory& truth = pair.truth;
   const Trajectory& estimate = pair.estimate;
   const AteReport report =
@@ -166,13 +180,13 @@ CLI::App* add_metric(CLI::App& eval, const char* name, const char* about,
   metric
       ->add_option("--format", arguments->files.format,
                    "of ESTIMATE: auto (by its columns), tum, kitti or euroc")
-      ->check(CLI::IsMember(trajectory_format_names()))
+      ->check(one_of(trajectory_format_names()))
       ->option_text("NAME");
   metric->add_option("--truth-format", arguments->files.truth_format, "of GROUNDTRUTH, likewise")
-      ->check(CLI::IsMember(trajectory_format_names()))
+      ->check(one_of(trajectory_format_names()))
       ->option_text("NAME");
   metric->add_option("--align", arguments->alignment, "se3, sim3 (with scale) or none")
-      ->check(CLI::IsMember({"se3", "sim3", "none"}))
+      ->check(one_of({"se3", "sim3", "none"}))
       ->option_text("se3|sim3|none");
   metric
       ->add_option("--max-difference", arguments->max_difference,
@@ -194,6 +208,7 @@ void add_eval_command(CLI::App& app) {
   CLI::App* ate =
       add_metric(*eval, "ate", "absolute trajectory error: distance of positions", arguments);
   ate->add_option("--plot", arguments->plot, "also draw both trajectories as an SVG picture")
+      ->check(svg_file())
       ->option_text("FILE.svg");
   ate->add_option("--search-offset", arguments->search_offset,
                   "find the offset of the clocks, up to so many seconds, that fits best")
@@ -209,7 +224,7 @@ void add_eval_command(CLI::App& app) {
       ->check(number(1e-6, 1e9))
       ->option_text("N");
   rpe->add_option("--delta-unit", relative->unit, "frames or seconds (frames)")
-      ->check(CLI::IsMember({"frames", "seconds"}))
+      ->check(one_of({"frames", "seconds"}))
       ->option_text("frames|seconds");
   rpe->add_flag("--consecutive", relative->consecutive,
                 "let each pair begin where the last ended, not at every pose");

@@ -249,12 +249,13 @@ void add_eval_openloris_command(CLI::App& eval) {
       ->check(number(1e-9, kNoLimit))
       ->option_text("DEG");
   command->add_option("--align", arguments->alignment, "se3 or sim3 (with scale)")
-      ->check(CLI::IsMember({"se3", "sim3"}))
+      ->check(one_of({"se3", "sim3"}))
       ->option_text("se3|sim3");
   command->add_option("--json", arguments->json, "also write the figures to a JSON file")
       ->option_text("FILE");
   command
       ->add_option("--plot", arguments->plot, "also draw when the place was known as SVG picture")
+      ->check(svg_file())
       ->option_text("FILE.svg");
   command->callback([arguments] { run(*arguments); });
 }

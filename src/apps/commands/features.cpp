@@ -82,9 +82,10 @@ void extract(const ExtractArguments& arguments) {
 }  // namespace
 
 void add_feature_options(CLI::App& command, FeatureArguments& arguments) {
-  command.add_option(
-      "--features", arguments.features,
-      "name of an extractor, or a model manifest (default: hfnet, or orb without it)");
+  command
+      .add_option("--features", arguments.features,
+                  "name of an extractor, or a model manifest (default: hfnet, or orb without it)")
+      ->check(extractor_name());
   command
       .add_option("--max-keypoints", arguments.options.max_keypoints, "most keypoints per image")
       ->check(range_of<ExtractorOptions>("max_keypoints"));

@@ -188,7 +188,8 @@ void add_bench_command(CLI::App& app) {
   command
       ->add_option("--features", arguments->features,
                    "names or manifests, separated by commas (default: all whose files are there)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->check(extractor_name());
   command->add_option("--frames", arguments->frames, "frames, evenly over the recording")
       ->check(whole_number(1, 100000))
       ->capture_default_str();

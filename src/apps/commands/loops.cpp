@@ -70,12 +70,16 @@ void find_loops(const LoopsArguments& arguments) {
   if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
   std::optional<ResultFolder> folder;  // before anything costs time
   if (!settings.out.empty()) folder.emplace(settings.out, loop_result_files());
-  std::optional<Unsaved> unsaved(std::in_place);
+  std::optional<Unsaved> unsaved;
   Progress progress("images", sequence->size());
-  const LoopExperiment experiment = run_loop_experiment(
-      settings, *sequence,
-      [&](std::size_t done, std::size_t) { progress.update(done, "finding loops"); });
+  const LoopExperiment experiment =
+      run_loop_experiment(settings, *sequence, [&](std::size_t done, std::size_t) {
+        if (!unsaved) unsaved.emplace();  // networks and vocabularies are loaded
+        progress.update(done, "finding loops");
+      });
   progress.finish();
+  // To judge very many images takes longer than anybody waits after a stop.
+  unsaved.reset();
   if (experiment.queries.empty() && stop_requested()) return;
   if (experiment.queries.empty()) {
     throw InputError(fmt::format("{}: no image to ask for, expected some{}", settings.sequence,
@@ -87,11 +91,10 @@ void find_loops(const LoopsArguments& arguments) {
   if (folder) {
     write_loop_results(steps, *folder, settings, experiment, *truth, curves, sequence->name());
   }
-  unsaved.reset();
   print_table(experiment, curves);
   if (!sequence->skipped().empty()) {
     const SkippedFrame& first = sequence->skipped().front();
-    warn("{} frames were skipped; the first, {}: {}", sequence->skipped().size(), first.index,
+    warn("frames that were skipped: {}; the first, {}: {}", sequence->skipped().size(), first.index,
          first.reason);
   }
   if (folder) print("results in {}\n", folder->path());
@@ -129,14 +132,17 @@ void add_input_options(CLI::App& command, LoopSettings& settings) {
       .add_option("--ground-truth", settings.truth,
                   "`poses`, or a square matrix as .mat (v5), text or black-and-white image")
       ->required();
-  command.add_option("--format", settings.format,
-                     "auto, tum, 7scenes, openloris, kitti, folder or images");
+  command
+      .add_option("--format", settings.format,
+                  "auto, tum, 7scenes, openloris, kitti, folder or images")
+      ->check(recording_format());
   command
       .add_option("--eye", settings.eye,
                   "all, left or right: images of which camera, where two take turns")
+      ->check(one_of({"all", "left", "right"}))
       ->capture_default_str();
   command.add_option("--stride", settings.stride, "Use every n-th frame")->check(whole_number(1));
-  command.add_option("--max-frames", settings.max_frames, "Stop after so many frames")
+  command.add_option("--max-frames", settings.max_frames, "Stop after so many frames, 0 = use all")
       ->check(whole_number(0));
   PoseLoopOptions& poses = settings.poses;
   command.add_option("--window", poses.window, "Seconds that a view must be old to be found")
@@ -179,6 +185,7 @@ void add_method_options(CLI::App& command, LoopsArguments& arguments) {
           "--method", settings.methods,
           fmt::format("One or more, separated by commas: {}", fmt::join(loop_method_names(), ", ")))
       ->delimiter(',')
+      ->check(accepted_by([](const std::string& name) { parse_loop_method(name); }))
       ->required();
   command.add_option("--config", arguments.config,
                      "YAML file of thresholds and other options of the detector");
@@ -187,8 +194,10 @@ void add_method_options(CLI::App& command, LoopsArguments& arguments) {
                   "Similar places by words whose global descriptors are compared")
       ->check(range_of<LoopOptions>("candidates"))
       ->capture_default_str();
-  command.add_option("--features", settings.features,
-                     "Extractor of all methods but orb-bow: name or model manifest");
+  command
+      .add_option("--features", settings.features,
+                  "Extractor of all methods but orb-bow: name or model manifest")
+      ->check(extractor_name());
   command.add_option("--vocabulary", settings.hf_vocabulary,
                      "Its vocabulary (default: models/vocabulary/NAME.fbow)");
   command.add_option("--orb-vocabulary", settings.orb_vocabulary,

@@ -163,6 +163,7 @@ void add_relocalize_command(CLI::App& app) {
                       "folder for poses.txt (accepted ones, in the map's frame) and "
                       "relocalization.csv");
   command->add_option("--format", arguments->reader.format, "format of the recording")
+      ->check(recording_format())
       ->capture_default_str();
   command->add_option("--calibration", arguments->reader.calibration,
                       "camera preset or YAML file (default: by format)");

@@ -21,6 +21,8 @@
 namespace dxslam::apps {
 namespace {
 
+constexpr double kLongestGap = 3600.0;  // seconds between two frames in real time
+
 struct RunArguments {
   RunSettings settings;
   std::string sequence;
@@ -56,6 +58,18 @@ class RealTimePace {
   Clock::time_point start_ = Clock::now();
   std::optional<double> first_stamp_;
 };
+
+// Stamps in nanoseconds would take years.
+void require_pace(const RgbdSequence& sequence) {
+  for (std::size_t i = 1; i < sequence.size(); ++i) {
+    const double gap = sequence.stamp(i) - sequence.stamp(i - 1);
+    if (gap <= kLongestGap) continue;
+    throw InputError(fmt::format(
+        "{}: with --realtime, frame {} would be waited for for {:.3g} s, expected stamps "
+        "in seconds, at most {:g} s apart",
+        sequence.name(), i, gap, kLongestGap));
+  }
+}
 
 void feed(const RunArguments& arguments, RgbdSequence& sequence, Session& session,
           RunRecord& record) {
@@ -118,7 +132,7 @@ void print_outcome(const RunRecord& record, const RgbdSequence& sequence, const 
   if (record.truth) print_truth(*record.truth, sequence.camera());
   print_skipped(all_skipped(sequence, record.failed_images));
   if (record.frames_dropped > 0) {
-    warn("{} frames came too fast and were dropped", record.frames_dropped);
+    warn("frames that came too fast and were dropped: {}", record.frames_dropped);
   }
 }
 
@@ -146,6 +160,7 @@ int run(const RunArguments& arguments) {
   const std::unique_ptr<RgbdSequence> sequence =
       stoppable(open_recording(arguments.sequence, arguments.settings.reader));
   require_depth(*sequence);
+  if (arguments.realtime) require_pace(*sequence);
   session.claim_targets();
   OnlineTrajectory online(session.folder(), "trajectory.txt");
   Progress progress("frames", planned_frames(arguments, *sequence));
@@ -182,7 +197,8 @@ void add_run_command(CLI::App& app) {
                       "File that pairs colour with depth images");
   command->add_flag("--thumbnails", settings.thumbnails,
                     "Put small pictures of the keyframes into the map, 3 to 6 KiB each");
-  command->add_option("--max-frames", arguments->max_frames, "Stop after so many frames")
+  command
+      ->add_option("--max-frames", arguments->max_frames, "Stop after so many frames, 0 = use all")
       ->check(whole_number(0));
   command
       ->add_option_function<double>(

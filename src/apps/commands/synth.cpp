@@ -63,6 +63,7 @@ void add_synth_command(CLI::App& app) {
   options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("OUT", arguments->out, "folder to write to")->required();
   command->add_option("--scene", options.scene, "room, office or corridor (a loop of 208 m)")
+      ->check(one_of({"room", "office", "corridor"}))
       ->capture_default_str();
   command->add_option("--frames", options.frames, "most frames; 0: the whole path")
       ->check(range_of<SyntheticOptions>("frames"))
@@ -100,7 +101,12 @@ void add_synth_command(CLI::App& app) {
   command->add_option("--standstill", options.path.standstill, "seconds at rest before the walk")
       ->check(range_of<PathOptions>("standstill"))
       ->capture_default_str();
-  command->add_option("--factor", arguments->factors, factor_help())->allow_extra_args(false);
+  command->add_option("--factor", arguments->factors, factor_help())
+      ->check(accepted_by([](const std::string& text) {
+        FactorOptions unused;
+        set_factor(unused, text);
+      }))
+      ->allow_extra_args(false);
   command->add_option("--factor-seed", options.factors.seed, "seed of the factors")
       ->check(range_of<FactorOptions>("seed"))
       ->capture_default_str();

@@ -148,7 +148,7 @@ int train(const TrainArguments& arguments) {
   print("{}: {} words of {} {} from {} images, {} levels\n", arguments.out, info.words,
         info.dimension, info.binary ? "bytes" : "floats", trainer.images(), info.depth);
   if (stream.skipped() > 0) {
-    warn("{} images were skipped; the first: {}", stream.skipped(), stream.first_skipped());
+    warn("images that were skipped: {}; the first: {}", stream.skipped(), stream.first_skipped());
   }
   return kSuccess;
 }
@@ -198,7 +198,7 @@ void add_train_command(CLI::App& vocab) {
       ->required();
   command->add_option("--out", arguments->out, "FBoW file to write")->required();
   command->add_option("--method", options.method, "incremental (the paper's) or kmeans")
-      ->check(CLI::IsMember({"incremental", "kmeans"}))
+      ->check(one_of({"incremental", "kmeans"}))
       ->capture_default_str();
   command->add_option("--branching", options.branching, "most children of a node")
       ->check(range_of<VocabularyTrainingOptions>("branching"))
@@ -264,7 +264,7 @@ void add_vocab_command(CLI::App& app) {
   to->add_option("IN", arguments->in, "FBoW or DBoW2 text file")->required();
   to->add_option("OUT", arguments->out, "file to write")->required();
   to->add_option("--to", arguments->format, "fbow, dbow2 or auto (dbow2 for .txt)")
-      ->check(CLI::IsMember({"auto", "fbow", "dbow2"}))
+      ->check(one_of({"auto", "fbow", "dbow2"}))
       ->capture_default_str();
   to->callback([arguments] { convert(*arguments); });
 }
