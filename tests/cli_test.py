@@ -214,8 +214,12 @@ class BrokenInput(Recorded):
         self.refuse_run(copy, f"rgb.txt:{self.line}")
 
     def test_unknown_features(self):
-        self.refuse(dxslam("run", self.recording, "--features", "psychic", "--out",
-                           self.folder / "out"), "psychic")
+        out = self.folder / "out"
+        done = dxslam("run", self.recording, "--features", "psychic", "--out", out)
+        self.assertEqual(done.returncode, BAD_USAGE, done.stderr)
+        self.assertIn("psychic", done.stderr)
+        self.refuse(dxslam("run", self.recording, "--features", "psychic.yaml", "--out", out),
+                    "psychic")
 
     def test_one_broken_frame_is_skipped_and_reported(self):
         copy = self.copy()
@@ -244,6 +248,74 @@ class BrokenInput(Recorded):
         self.refuse(dxslam("eval", "ate", good, self.folder / "none.txt"), "none.txt")
 
 
+class Said(Recorded):
+    """What a run cannot do, or cannot have done, is said."""
+
+    frames = 20
+
+    def summary(self, out):
+        return json.loads((out / "summary.json").read_text())
+
+    def test_features_without_a_global_descriptor_find_no_place(self):
+        map_, out = self.folder / "m.dxmap", self.folder / "found"
+        done = self.succeed(dxslam("run", self.recording, "--features", "orb", "--map-out", map_))
+        self.assertIn("no global descriptor: a place that was seen before", done.stderr)
+        done = self.run_orb(out, "--map-in", map_, "--mode", "localization")
+        self.assertEqual(done.returncode, TRACKING_FAILED, done.stderr)
+        self.assertIn("no global descriptor: no frame can be found in the stored map", done.stderr)
+        self.assertIn("no keyframe of the map has a global descriptor",
+                      self.summary(out)["no_pose_reason"])
+
+    def test_a_missing_vocabulary(self):
+        out = self.folder / "wordless"
+        done = self.succeed(dxslam("run", self.recording, "--features", "opencv_orb", "--out", out))
+        self.assertIn("no vocabulary of features `opencv_orb`", done.stderr)
+        self.assertTrue(any("no loops are closed" in note for note in self.summary(out)["notes"]))
+        done = self.succeed(dxslam("run", self.recording, "--features", "opencv_orb",
+                                   "--vocabulary", "none"))
+        self.assertNotIn("no vocabulary", done.stderr)
+
+    def test_depth_beyond_the_camera(self):
+        copy, out = self.copy(), self.folder / "far"
+        file = copy / "calibration.yaml"
+        file.write_text(re.sub(r"(?m)^max_depth:.*\n", "", file.read_text()) + "max_depth: 0.05\n")
+        done = self.run_orb(out, recording=copy)
+        self.assertEqual(done.returncode, TRACKING_FAILED, done.stderr)
+        self.assertIn("beyond max_depth", self.summary(out)["no_pose_reason"])
+
+    def test_real_time_of_stamps_that_are_no_seconds(self):
+        copy = self.copy()
+        for name in ("rgb.txt", "depth.txt"):
+            lines = [line.split() for line in (copy / name).read_text().splitlines() if line[0] != "#"]
+            (copy / name).write_text("".join(f"{float(stamp) * 1e9:.0f} {image}\n"
+                                             for stamp, image in lines))
+        done = dxslam("run", copy, "--realtime")
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertIn("--realtime, frame 1", done.stderr)
+
+    def test_a_truth_that_cannot_be_compared(self):
+        copy = self.copy()
+        rows = poses(copy / "groundtruth.txt")
+        self.edit(copy, [[row[0], 0.001 * i, 0, 0, *row[4:]] for i, row in enumerate(rows)])
+        done = self.succeed(self.run_orb(self.folder / "line", recording=copy))
+        self.assertIn("not compared with the true trajectory", done.stderr)
+
+    def test_a_short_path_tells_no_scale(self):
+        copy = self.copy()
+        rows = poses(copy / "groundtruth.txt")
+        first = rows[0]
+        for factor, advised in ((1.5, True), (0.02, False)):
+            self.edit(copy, [[row[0], *[f + 2 * factor * (v - f) for v, f in zip(row[1:4], first[1:4])],
+                              *row[4:]] for row in rows])
+            done = self.succeed(self.run_orb(self.folder / "scale", recording=copy))
+            self.assertEqual("depth_factor of" in done.stderr, advised, done.stderr)
+            self.assertEqual("calibration (fx" in done.stderr, advised, done.stderr)
+
+    def edit(self, recording, rows):
+        text = "\n".join(" ".join(str(value) for value in row) for row in rows)
+        (recording / "groundtruth.txt").write_text(text + "\n")
+
+
 class Trajectories(unittest.TestCase):
     """Files of `dxslam eval`, without any recording."""
 
@@ -256,11 +328,13 @@ class Trajectories(unittest.TestCase):
         (self.folder / name).write_text("\n".join(rows) + "\n")
         return self.folder / name
 
+    @staticmethod
+    def row(t, late=0.0):
+        return (f"{t + late:.4f} {math.sin(t):.6f} {math.cos(2 * t):.6f} {0.3 * math.sin(3 * t):.6f}"
+                " 0 0 0 1")
+
     def walk(self, late=0.0, count=300):
-        for i in range(count):
-            t = 0.02 * i
-            yield (f"{t + late:.4f} {math.sin(t):.6f} {math.cos(2 * t):.6f} {0.3 * math.sin(3 * t):.6f}"
-                   " 0 0 0 1")
+        return (self.row(0.02 * i, late) for i in range(count))
 
     def test_poses_without_stamps_belong_together_by_number(self):
         rows = [f"1 0 0 {math.sin(0.1 * i):.6f} 0 1 0 {math.cos(0.2 * i):.6f} 0 0 1 {0.1 * i:.6f}"
@@ -285,6 +359,32 @@ class Trajectories(unittest.TestCase):
         found = json.loads(report.read_text())
         self.assertAlmostEqual(found["time_offset_s"], -0.3125, delta=0.001)
         self.assertLess(found["position"]["rmse"], 0.002)
+
+    def test_an_offset_between_the_stamps_asks_for_a_larger_difference(self):
+        truth = self.write("truth.txt", list(self.walk(count=600))[::10])  # every 0.2 s
+        # Halfway between, once the offset is taken away.
+        late = self.write("late.txt", [self.row(0.2 * i + 0.1, late=0.5) for i in range(55)])
+        done = dxslam("eval", "ate", truth, late, "--search-offset", "1")
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        wider = re.search(r"expected --max-difference ([0-9.]+)", done.stderr)
+        self.assertTrue(wider, done.stderr)
+        done = dxslam("eval", "ate", truth, late, "--search-offset", "1", "--max-difference", wider[1])
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_stamp_that_comes_again_stands_for_one_pose(self):
+        rows = list(self.walk())
+        twice = self.write("twice.txt", [row for i in range(0, 300, 3) for row in
+                                         (rows[i], rows[i].split()[0] + " 9 9 9 0 0 0 1")])
+        done = dxslam("eval", "ate", twice, twice)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("100 of 200 poses have the stamp of the one before", done.stderr)
+        self.assertRegex(done.stdout, r"ATE \(m\) +0\.000000")
+
+    def test_motions_over_more_than_there_is(self):
+        truth = self.write("truth.txt", self.walk())
+        done = dxslam("eval", "rpe", truth, truth, "--delta", "1e9")
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertIn("no two of the 300 matched poses are 1e+09 frames apart", done.stderr)
 
     @unittest.skipIf(os.environ.get("DXSLAM_SANITIZE"), "sanitizers reserve terabytes of addresses")
     def test_large_files_take_memory_by_their_poses_only(self):

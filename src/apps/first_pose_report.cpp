@@ -9,22 +9,28 @@
 namespace dxslam::apps {
 namespace {
 
-bool has_reading(const cv::Mat& depth) {
+// 0 where there is no reading.
+float nearest_reading(const cv::Mat& depth) {
+  float nearest = 0.0F;
   for (int row = 0; row < depth.rows; ++row) {
     const float* line = depth.ptr<float>(row);
-    if (std::any_of(line, line + depth.cols, [](float metres) { return metres > 0.0F; })) {
-      return true;
+    for (const float* metres = line; metres != line + depth.cols; ++metres) {
+      if (*metres > 0.0F && (nearest == 0.0F || *metres < nearest)) nearest = *metres;
     }
   }
-  return false;
+  return nearest;
 }
 
 }  // namespace
 
-void FirstPoseReport::offer(const RgbdImage& image) {
+void FirstPoseReport::offer(const RgbdImage& image, double max_depth) {
   if (has_pose_) return;
   ++images_;
-  if (has_reading(image.depth)) ++with_depth_;
+  max_depth_ = max_depth;
+  const float nearest = nearest_reading(image.depth);
+  if (nearest == 0.0F) return;
+  if (nearest <= static_cast<float>(max_depth)) ++with_depth_;
+  if (nearest_ == 0.0F || nearest < nearest_) nearest_ = nearest;
 }
 
 void FirstPoseReport::note(const TrackedFrame& frame) {
@@ -35,11 +41,21 @@ void FirstPoseReport::note(const TrackedFrame& frame) {
 }
 
 std::optional<std::string> FirstPoseReport::why_none(const SystemOptions& options,
-                                                     bool in_stored_map, bool stopped) const {
+                                                     bool in_stored_map, bool finds_places,
+                                                     bool stopped) const {
   const int needed = options.tracking.min_start_points;
   if (has_pose_) return std::nullopt;
   if (images_ == 0) return stopped ? "stopped before the first frame" : "no image could be read";
-  if (with_depth_ == 0) return fmt::format("no depth reading in the first {} images", images_);
+  if (nearest_ == 0.0F) return fmt::format("no depth reading in the first {} images", images_);
+  if (with_depth_ == 0) {
+    return fmt::format(
+        "the nearest depth reading of {} images is {:.3g} m, beyond max_depth of the camera ({:g} "
+        "m): is its depth_factor right?",
+        images_, nearest_, max_depth_);
+  }
+  if (in_stored_map && !finds_places) {
+    return "no keyframe of the map has a global descriptor, so that no frame can be found in it";
+  }
   if (keypoints_ < needed) {
     return fmt::format("too few keypoints in {} images: at most {} of {} needed", images_,
                        keypoints_, needed);

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "apps/recording_report.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +19,14 @@ using Json = nlohmann::ordered_json;
 constexpr double kWrongScale = 0.1;
 // The path tells scale only if it shrinks the error as well; a short path fits at any scale.
 constexpr double kExplained = 0.7;
+constexpr double kLeastExtent = 0.3;  // metres; an error of some cm is no matter of scale
+
+// Of the box around the true positions.
+double extent_of(const std::vector<PosePair>& pairs) {
+  Eigen::AlignedBox3d box;
+  for (const PosePair& pair : pairs) box.extend(pair.truth.world_from_camera.translation());
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
 
 }  // namespace
 
@@ -47,7 +56,7 @@ std::vector<SkippedFrame> all_skipped(const RgbdSequence& recording,
 
 void print_skipped(const std::vector<SkippedFrame>& skipped) {
   if (skipped.empty()) return;
-  warn("{} frames were skipped; the first, {}: {}", skipped.size(), skipped.front().index,
+  warn("frames that were skipped: {}; the first, {}: {}", skipped.size(), skipped.front().index,
        skipped.front().reason);
 }
 
@@ -67,7 +76,7 @@ Json recording_json(const RgbdSequence& recording) {
 }
 
 bool TruthReport::scale_is_wrong() const {
-  return std::abs(std::log(scale)) > std::log1p(kWrongScale) &&
+  return extent > kLeastExtent && std::abs(std::log(scale)) > std::log1p(kWrongScale) &&
          rmse_with_scale < kExplained * position.rmse;
 }
 
@@ -77,8 +86,10 @@ std::optional<TruthReport> compare_with_truth(const RgbdSequence& recording,
   try {
     const AteReport rigid = evaluate_ate(recording.ground_truth(), estimate);
     const AteReport similar = evaluate_ate(recording.ground_truth(), estimate, {Alignment::kSim3});
-    return TruthReport{rigid.position, similar.truth_from_estimate.scale(), similar.position.rmse};
-  } catch (const InputError&) {  // no common stamps, or all on one line
+    return TruthReport{rigid.position, similar.truth_from_estimate.scale(), similar.position.rmse,
+                       extent_of(rigid.pairs)};
+  } catch (const InputError& error) {  // no common stamps, or all on one line
+    warn("{}: not compared with the true trajectory: {}", recording.name(), error.what());
     return std::nullopt;
   }
 }
@@ -89,8 +100,8 @@ void print_truth(const TruthReport& report, const Camera& camera) {
   if (!report.scale_is_wrong()) return;
   warn(
       "the true path is {:.3g} times as long: with a depth_factor of {:.4g} instead of {:g} they "
-      "would agree",
-      report.scale, camera.depth_factor / report.scale, camera.depth_factor);
+      "would agree, if the calibration (fx {:.1f}) is right",
+      report.scale, camera.depth_factor / report.scale, camera.depth_factor, camera.fx);
 }
 
 Json truth_json(const std::optional<TruthReport>& report) {

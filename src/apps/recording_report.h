@@ -29,9 +29,12 @@ struct TruthReport {
   ErrorStatistics position;      ///< metres, aligned by SE(3): the ATE
   double scale = 1.0;            ///< of an alignment by Sim(3): truth = scale * estimate
   double rmse_with_scale = 0.0;  ///< metres, of that alignment
-  bool scale_is_wrong() const;   ///< by more than 10 %, and the truth shows it
+  double extent = 0.0;           ///< metres, of the true path
+  /// By more than 10 %, and the truth shows it: the path is long enough for that.
+  bool scale_is_wrong() const;
 };
-/// Nothing where there is no truth, or too little of both to be aligned.
+/// Nothing where there is no truth; nor, with the reason on stderr, where there is too little of
+/// both to be aligned.
 std::optional<TruthReport> compare_with_truth(const RgbdSequence& recording,
                                               const Trajectory& estimate);
 /// A line on stdout, and a sentence on stderr if the scale is wrong.

@@ -196,7 +196,8 @@ Json summarise(OutputSteps& steps, const Session& session, const RunRecord& reco
   summary["realtime"] = record.realtime;
   if (session.system() != nullptr) {
     add_system(steps, summary, *session.system());
-    summary["notes"] = feature_notes(session.options(), session.system()->extractor());
+    summary["notes"] = feature_notes(session.options(), session.system()->extractor(),
+                                     !session.settings().map_in.empty());
   }
   add_times(summary, record, offered);
   add_configuration(summary, session.settings(), session.options());

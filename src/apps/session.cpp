@@ -111,13 +111,13 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
       });
   if (!made.wait()) return nullptr;
   std::unique_ptr<System> system = made.get();
-  tell_notes(feature_notes(options_, system->extractor()));
   header_ = map_header(camera, system->extractor());
   std::vector<std::string> pictures;
   if (stored) {
     pictures =
         hand_over(std::move(*stored), *system, settings_.map_in, header_, options_.mode == "slam");
   }
+  tell_notes(feature_notes(options_, system->extractor(), stored.has_value()));
   thumbnails_.emplace(settings_.thumbnails, std::move(pictures));
   saver_.emplace(settings_.map_out, header_);
   if (settings_.autosave > 0 || settings_.thumbnails) {
@@ -157,7 +157,7 @@ bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,
 }
 
 bool Session::process(const RgbdImage& image, bool live) {
-  first_pose_.offer(image);
+  first_pose_.offer(image, header_.camera.max_depth);
   thumbnails_->offer(image);
   if (live) return system_->try_process(image);
   system_->process(image);
@@ -173,7 +173,8 @@ CallbackFailures Session::tell_callback_failures() const {
 }
 
 std::optional<std::string> Session::why_no_pose() const {
-  return first_pose_.why_none(options_, !settings_.map_in.empty(), stop_requested());
+  const bool finds_places = header_.traits.global_dimension > 0;
+  return first_pose_.why_none(options_, !settings_.map_in.empty(), finds_places, stop_requested());
 }
 
 void Session::save_map(OutputSteps& steps) {
