@@ -15,12 +15,13 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from cli_test import SLOWER, TIMEOUT
+
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
 SHARED = Path(os.environ.get("DXSLAM_SHARED", ROOT.parent / "shared"))
 REPORTS = SHARED / "cases" / "reports"
 SKIPPED = 77
-TIMEOUT = 300
 
 # Report: (regular expressions found in its output, regular expressions not found in it).
 EXPECTED = {
@@ -113,7 +114,7 @@ for _name in report_names():
 class Files(unittest.TestCase):
     """The files of $DXSLAM_SHARED/cases: each is refused in one sentence, and soon."""
 
-    def refuse(self, name, *words, seconds=20):
+    def refuse(self, name, *words, seconds=20 * SLOWER):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([PROGRAM, *map(str, words)], stdin=subprocess.DEVNULL, cwd=folder,
                                   capture_output=True, text=True, timeout=seconds)
@@ -159,7 +160,7 @@ class Files(unittest.TestCase):
                            capture_output=True)
             frame = sorted((recording / "rgb").iterdir())[3]
             frame.write_bytes(file.read_bytes())
-            done = subprocess.run([PROGRAM, "run", recording, "--features", "orb"], timeout=20,
+            done = subprocess.run([PROGRAM, "run", recording, "--features", "orb"], timeout=20 * SLOWER,
                                   stdin=subprocess.DEVNULL, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stderr, f"1 frames? w(as|ere) skipped.*{frame.name}")

@@ -17,9 +17,10 @@ import time
 import unittest
 from pathlib import Path
 
+from cli_test import TIMEOUT
+
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
-TIMEOUT = 120
 SUCCESS, BAD_USAGE, BAD_INPUT, TRACKING_FAILED, INTERRUPTED, INTERNAL_ERROR = 0, 2, 3, 4, 5, 70
 FRAMES = 40
 SECONDS_TO_STOP = 2.0 * 2.5  # the promise, and room for machines busy with other tests (CONTRIBUTING)

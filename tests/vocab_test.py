@@ -13,7 +13,7 @@ import sys
 import time
 import unittest
 
-from cli_test import BAD_USAGE, INTERRUPTED, PROGRAM, ROOT, Recorded, dxslam
+from cli_test import BAD_USAGE, INTERRUPTED, PROGRAM, ROOT, TIMEOUT, Recorded, dxslam
 
 FRAMES = 24
 
@@ -81,7 +81,7 @@ class Vocab(Recorded):
             process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             time.sleep(delay)
             process.send_signal(signal.SIGINT)
-            process.communicate(timeout=60)
+            process.communicate(timeout=TIMEOUT)
             if process.returncode == 0:
                 break  # too late
             if process.returncode == INTERRUPTED:
@@ -141,7 +141,7 @@ class Vocab(Recorded):
         words = [PROGRAM, "vocab", "train", *[self.recording] * 9, "--features", "orb", "--words", 500,
                  "--out", out, "--checkpoint", self.folder / "unkept"]
         done = subprocess.run(
-            [*map(str, words)], capture_output=True, text=True, timeout=120,
+            [*map(str, words)], capture_output=True, text=True, timeout=TIMEOUT,
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("File too large; the training goes on"), 1, done.stderr)
