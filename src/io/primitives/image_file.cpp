@@ -52,10 +52,10 @@ void check_size(cv::Size_<std::uint32_t> size, const std::optional<ExpectedSize>
                   size.width, size.height, limits::kImageSide, limits::kImageArea));
 }
 
-cv::Mat decode(const std::string& path, const std::optional<ExpectedSize>& expected) {
-  const std::string bytes = read_file(path, kExpected, limits::kFileBytes);
+cv::Mat decode(std::string_view bytes, const std::string& path,
+               const std::optional<ExpectedSize>& expected) {
   if (bytes.empty()) refuse(path, fmt::format("empty file, expected {}", kExpected));
-  const std::string_view start = std::string_view(bytes).substr(0, 16);
+  const std::string_view start = bytes.substr(0, 16);
   const ImageCodec* codec = find_codec(start);
   if (codec == nullptr) {
     refuse(path, fmt::format("begins with {}, expected {}{}", in_quotes(start.substr(0, 8)),
@@ -83,7 +83,16 @@ std::string ending_of(const std::filesystem::path& path) {
 }  // namespace
 
 cv::Mat read_color_image(const std::string& path, const std::optional<ExpectedSize>& expected) {
-  cv::Mat image = decode(path, expected);
+  return decode_color_image(read_file(path, kExpected, limits::kFileBytes), path, expected);
+}
+
+cv::Mat read_depth_image(const std::string& path, const std::optional<ExpectedSize>& expected) {
+  return decode_depth_image(read_file(path, kExpected, limits::kFileBytes), path, expected);
+}
+
+cv::Mat decode_color_image(std::string_view bytes, const std::string& path,
+                           const std::optional<ExpectedSize>& expected) {
+  cv::Mat image = decode(bytes, path, expected);
   if (image.type() == CV_8UC3 || image.type() == CV_8UC1) return image;
   if (image.type() == CV_16UC3) {
     cv::Mat narrow;
@@ -95,8 +104,9 @@ cv::Mat read_color_image(const std::string& path, const std::optional<ExpectedSi
                            8 * image.elemSize1(), image.channels()));
 }
 
-cv::Mat read_depth_image(const std::string& path, const std::optional<ExpectedSize>& expected) {
-  cv::Mat image = decode(path, expected);
+cv::Mat decode_depth_image(std::string_view bytes, const std::string& path,
+                           const std::optional<ExpectedSize>& expected) {
+  cv::Mat image = decode(bytes, path, expected);
   if (image.type() == CV_16UC1) return image;
   if (image.type() == CV_32FC1) {
     for (int y = 0; y < image.rows; ++y) {

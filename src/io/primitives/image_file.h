@@ -33,6 +33,12 @@ cv::Mat read_color_image(const std::string& path,
 cv::Mat read_depth_image(const std::string& path,
                          const std::optional<ExpectedSize>& expected = std::nullopt);
 
+/// The same of a file's bytes; `where` stands for the file in messages.
+cv::Mat decode_color_image(std::string_view bytes, const std::string& where,
+                           const std::optional<ExpectedSize>& expected = std::nullopt);
+cv::Mat decode_depth_image(std::string_view bytes, const std::string& where,
+                           const std::optional<ExpectedSize>& expected = std::nullopt);
+
 /// The bytes of a PNG or JPEG (quality 95) file, as the ending of `path` says, of an image that is
 /// CV_8UC1, CV_8UC3 (BGR) or, for PNG, CV_16UC1. Throws InputError for other endings.
 std::string encode_image(const std::string& path, const cv::Mat& image);

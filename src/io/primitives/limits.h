@@ -22,6 +22,13 @@ inline constexpr std::size_t kFrames = 2'000'000;
 /// Poses of one trajectory: 13 hours at 200 Hz.
 inline constexpr std::size_t kPoses = 10'000'000;
 
+/// Messages of a bag: five hours at 1 kHz.
+inline constexpr std::size_t kBagMessages = 20'000'000;
+/// A chunk or message of a bag, unpacked; usual are 1 MB, a 4K colour image of 16 bits has 50 MB.
+inline constexpr std::size_t kBagChunkBytes = std::size_t{512} << 20;
+/// Small records of a bag: headers, names and indexes of one chunk.
+inline constexpr std::size_t kBagRecordBytes = std::size_t{64} << 20;
+
 /// An image, whose size is looked at before anything is decoded.
 inline constexpr std::uint32_t kImageSide = 16384;                     ///< pixels
 inline constexpr std::uint64_t kImageArea = std::uint64_t{64} << 20U;  ///< pixels
