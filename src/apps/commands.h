@@ -20,6 +20,7 @@ enum ExitCode : int {
 // (InputError, ContractError), main turns them into one line on stderr and an exit code. A command
 // that ends with a code of its own throws CLI::RuntimeError(code).
 void add_run_command(CLI::App& app);
+void add_info_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_synth_command(CLI::App& app);
 void add_config_command(CLI::App& app);

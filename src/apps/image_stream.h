@@ -22,9 +22,9 @@ class ImageStream {
     bool photo = false;  ///< of a folder of single photos
   };
 
-  /// Each source is the folder of a recording (any format that `dxslam run` reads) or of photos
-  /// (image files, ordered by the numbers in their names), whole or in part: FOLDER@FIRST:END or
-  /// FOLDER@FIRST:END:STEP, counted from 0, END left out. `stride` n takes every n-th of these
+  /// Each source is a recording (any format that `dxslam run` reads) or a folder of photos (image
+  /// files, ordered by the numbers in their names), whole or in part: SOURCE@FIRST:END or
+  /// SOURCE@FIRST:END:STEP, counted from 0, END left out. `stride` n takes every n-th of these
   /// images. Throws InputError if a source cannot be used.
   ImageStream(const std::vector<std::string>& sources, std::size_t stride);
 

@@ -245,8 +245,8 @@ LoopTruth load_loop_truth(const LoopSettings& settings, const RgbdSequence& sequ
   LoopTruth truth = read_loop_truth(settings.truth);
   const std::size_t frames = sequence.size();
   if (truth.frames() == frames) return truth;
-  if (settings.eye != "all") {
-    LoopTruth part = every_nth(truth, settings.eye == "right" ? 1 : 0, 2);
+  if (settings.reader.eye != "all") {
+    LoopTruth part = every_nth(truth, settings.reader.eye == "right" ? 1 : 0, 2);
     if (part.frames() == frames) return part;
   } else if (frames == 2 * truth.frames()) {
     return two_views_per_place(truth);

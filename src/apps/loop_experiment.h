@@ -12,6 +12,7 @@
 #include "evaluation/loop_truth.h"
 #include "evaluation/loop_truth_from_poses.h"
 #include "features/extractor_options.h"
+#include "io/recordings/sequence_reader.h"
 #include "place/loop_detector.h"
 
 namespace dxslam::apps {
@@ -19,8 +20,7 @@ namespace dxslam::apps {
 /// A run of loop detectors over the images of a recording.
 struct LoopSettings {
   std::string sequence;
-  std::string format = "auto";
-  std::string eye = "all";
+  SequenceOptions reader;
   std::string truth;  ///< "poses" or a file
   PoseLoopOptions poses;
   std::vector<std::string> methods;

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
@@ -13,5 +14,9 @@ namespace dxslam::apps {
 /// (RecordingFacts::notes), one line each.
 std::unique_ptr<RgbdSequence> open_recording(const std::string& path,
                                              const SequenceOptions& options = {});
+
+/// Adds the options that say what the recording is: --format, --calibration, --color-topic and
+/// --depth-topic.
+void add_reader_options(CLI::App& command, SequenceOptions& options);
 
 }  // namespace dxslam::apps

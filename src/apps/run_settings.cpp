@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "apps/run_settings.h"
 
+#include "apps/open_recording.h"
 #include "apps/system_setup.h"
 #include "apps/usage.h"
 #include "core/error.h"
@@ -24,11 +25,7 @@ void check_map_settings(const RunSettings& settings, const SystemOptions& option
 }  // namespace
 
 void add_run_options(CLI::App& command, RunSettings& settings) {
-  command.add_option("--format", settings.reader.format, "auto, tum, 7scenes, openloris or folder")
-      ->check(recording_format())
-      ->capture_default_str();
-  command.add_option("--calibration", settings.reader.calibration,
-                     "Camera preset or YAML file (default: by format)");
+  add_reader_options(command, settings.reader);
   command.add_option("--config", settings.config, "YAML file; see `dxslam config dump`");
   command.add_option("--features", settings.features, "Extractor name or model manifest")
       ->check(extractor_name());

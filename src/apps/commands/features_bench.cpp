@@ -30,6 +30,7 @@ constexpr std::size_t kWarmUp = 3;
 
 struct BenchArguments {
   std::string sequence;
+  SequenceOptions reader;
   std::string json;
   std::vector<std::string> features;
   ExtractorOptions options;
@@ -56,7 +57,7 @@ double percentile(std::vector<double> values, double share) {
 }
 
 std::vector<cv::Mat> read_frames(const BenchArguments& arguments) {
-  const auto sequence = open_recording(arguments.sequence);
+  const auto sequence = open_recording(arguments.sequence, arguments.reader);
   const std::size_t count = std::min(sequence->size(), static_cast<std::size_t>(arguments.frames));
   std::vector<cv::Mat> frames;
   for (std::size_t i = 0; i < count; ++i) {
@@ -184,6 +185,7 @@ void add_bench_command(CLI::App& app) {
   CLI::App* command = group->add_subcommand(
       "features", "time extractors on a recording, interleaved, OpenCV's ORB as the reference");
   command->add_option("sequence", arguments->sequence, "recording, see `dxslam run`")->required();
+  add_reader_options(*command, arguments->reader);
   command->add_option("--json", arguments->json, "file for the figures");
   command
       ->add_option("--features", arguments->features,

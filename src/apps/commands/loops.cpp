@@ -49,9 +49,7 @@ void find_loops(const LoopsArguments& arguments) {
   }
   validate_options("truth", settings.poses);
   for (const std::string& name : settings.methods) parse_loop_method(name);
-  SequenceOptions reader;
-  reader.format = settings.format;
-  reader.eye = settings.eye;
+  SequenceOptions reader = settings.reader;
   reader.needs_calibration = false;
   const std::unique_ptr<RgbdSequence> sequence =
       stoppable(open_recording(settings.sequence, reader));
@@ -126,18 +124,17 @@ void refuse_unused(const CLI::App& command, const LoopSettings& settings) {
 }
 
 void add_input_options(CLI::App& command, LoopSettings& settings) {
-  command.add_option("SEQUENCE", settings.sequence, "Folder of the recording or of images")
+  command
+      .add_option("SEQUENCE", settings.sequence,
+                  "Recording: a folder or a bag; or a folder of images")
       ->required();
   command
       .add_option("--ground-truth", settings.truth,
                   "`poses`, or a square matrix as .mat (v5), text or black-and-white image")
       ->required();
+  add_reader_options(command, settings.reader);
   command
-      .add_option("--format", settings.format,
-                  "auto, tum, 7scenes, openloris, kitti, folder or images")
-      ->check(recording_format());
-  command
-      .add_option("--eye", settings.eye,
+      .add_option("--eye", settings.reader.eye,
                   "all, left or right: images of which camera, where two take turns")
       ->check(one_of({"all", "left", "right"}))
       ->capture_default_str();

@@ -158,15 +158,11 @@ void add_relocalize_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("relocalize", "find every frame of a recording in a map, each by itself");
   command->add_option("MAP", arguments->map, "map file")->required();
-  command->add_option("SEQUENCE", arguments->sequence, "folder of the recording")->required();
+  command->add_option("SEQUENCE", arguments->sequence, "recording: a folder or a bag")->required();
   command->add_option("--out", arguments->out,
                       "folder for poses.txt (accepted ones, in the map's frame) and "
                       "relocalization.csv");
-  command->add_option("--format", arguments->reader.format, "format of the recording")
-      ->check(recording_format())
-      ->capture_default_str();
-  command->add_option("--calibration", arguments->reader.calibration,
-                      "camera preset or YAML file (default: by format)");
+  add_reader_options(*command, arguments->reader);
   command->add_option("--config", arguments->config, "YAML file; see `dxslam config dump`");
   command->add_option("--stride", arguments->stride, "use every n-th frame")
       ->check(whole_number(1));

@@ -194,7 +194,7 @@ void add_train_command(CLI::App& vocab) {
   CLI::App* command = vocab.add_subcommand("train", "train a vocabulary from images");
   command
       ->add_option("SEQUENCE", arguments->sources,
-                   "folders of recordings or photos; FOLDER@FIRST:END[:STEP] takes a part")
+                   "recordings, or folders of photos; SOURCE@FIRST:END[:STEP] takes a part")
       ->required();
   command->add_option("--out", arguments->out, "FBoW file to write")->required();
   command->add_option("--method", options.method, "incremental (the paper's) or kmeans")

@@ -17,13 +17,16 @@ constexpr std::uint16_t kInvalid = std::numeric_limits<std::uint16_t>::max();
 }  // namespace
 
 DepthRegistration::DepthRegistration(const Camera& color, const DepthCamera& depth)
-    : color_(color), color_from_depth_(depth.color_from_depth()) {
+    : color_(color),
+      raw_size_(depth.width == 0 ? color.width : depth.width,
+                depth.height == 0 ? color.height : depth.height),
+      color_from_depth_(depth.color_from_depth()) {
   require(depth.fx > 0.0 && depth.fy > 0.0, "registration needs the depth camera's focal lengths");
   // A tenth more than half a pixel, so that turned and slanted surfaces stay closed.
   half_footprint_ = std::max({0.5, 0.55 * color.fx / depth.fx, 0.55 * color.fy / depth.fy});
-  rays_.reserve(static_cast<std::size_t>(color.width) * static_cast<std::size_t>(color.height));
-  for (int y = 0; y < color.height; ++y) {
-    for (int x = 0; x < color.width; ++x) {
+  rays_.reserve(static_cast<std::size_t>(raw_size_.area()));
+  for (int y = 0; y < raw_size_.height; ++y) {
+    for (int x = 0; x < raw_size_.width; ++x) {
       const Eigen::Vector3d ray((x - depth.cx) / depth.fx, (y - depth.cy) / depth.fy, 1.0);
       rays_.push_back((color_from_depth_.rotation() * ray).cast<float>());
     }
@@ -31,9 +34,9 @@ DepthRegistration::DepthRegistration(const Camera& color, const DepthCamera& dep
 }
 
 cv::Mat DepthRegistration::operator()(const cv::Mat& raw) const {
-  require(raw.type() == CV_16UC1 && raw.cols == color_.width && raw.rows == color_.height,
-          "raw depth must be CV_16UC1 and of the camera's size");
-  cv::Mat registered(raw.size(), CV_16UC1, cv::Scalar(0));
+  require(raw.type() == CV_16UC1 && raw.size() == raw_size_,
+          "raw depth must be CV_16UC1 and of the depth camera's size");
+  cv::Mat registered(color_.height, color_.width, CV_16UC1, cv::Scalar(0));
   const Eigen::Vector3d shift = color_from_depth_.translation() * color_.depth_factor;
   auto ray = rays_.begin();
   for (int y = 0; y < raw.rows; ++y) {

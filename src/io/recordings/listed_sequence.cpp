@@ -86,16 +86,31 @@ class ListedSequence : public RgbdSequence {
     image.stamp = files.stamp;
     const Camera& camera = listing_.camera;
     const ExpectedSize size{{camera.width, camera.height}, listing_.calibration_source};
-    image.color = read_color_image(files.color, size);
+    image.color = listing_.load_color ? listing_.load_color(index, files, size)
+                                      : read_color_image(files.color, size);
     if (files.depth.empty()) return image;
-    cv::Mat depth = read_depth_image(files.depth, size);
+    image.depth = metric_depth(raw_depth(index, size));
+    return image;
+  }
+
+  cv::Mat raw_depth(std::size_t index, const ExpectedSize& color_size) const {
+    ExpectedSize size = color_size;
+    if (!listing_.raw_depth_size.empty()) {
+      size = {listing_.raw_depth_size, "the calibration of the depth camera"};
+    }
+    const ListedFrame& files = listing_.frames[index];
+    return listing_.load_depth ? listing_.load_depth(index, files, size)
+                               : read_depth_image(files.depth, size);
+  }
+
+  cv::Mat metric_depth(cv::Mat depth) const {
+    const Camera& camera = listing_.camera;
     if (depth.type() == CV_32FC1 && listing_.register_depth) {  // which works on raw units
       depth.convertTo(depth, CV_16U, camera.depth_factor);
     }
     if (listing_.register_depth) depth = listing_.register_depth(depth);
     if (depth.type() == CV_16UC1) depth.convertTo(depth, CV_32F, 1.0 / camera.depth_factor);
-    image.depth = depth;
-    return image;
+    return depth;
   }
 
   static void collect_depths(const cv::Mat& depth, std::vector<float>& depths) {

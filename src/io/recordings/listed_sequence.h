@@ -4,19 +4,27 @@
 
 #include <functional>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "core/sequence.h"
+#include "io/primitives/image_file.h"
 
 namespace dxslam {
 
-/// Files of one frame. `depth` is empty for a recording without depth.
+/// The files of one frame, or what messages call its images. `depth` is empty for a recording
+/// without depth.
 struct ListedFrame {
   double stamp = 0.0;
   std::string color;
   std::string depth;
 };
+
+/// An image of frame `index`, which is `frame`, as read_color_image() or read_depth_image() return
+/// it. Throws InputError, also for another size.
+using ImageLoader =
+    std::function<cv::Mat(std::size_t index, const ListedFrame& frame, const ExpectedSize& size)>;
 
 /// What a format reader finds out about a recording; what all formats then have in common is done
 /// by the sequence made from it.
@@ -31,6 +39,8 @@ struct SequenceListing {
   std::vector<std::string> notes;  ///< see RecordingFacts
   /// Raw CV_16UC1 depth to raw CV_16UC1 depth registered to colour; none = is registered.
   std::function<cv::Mat(const cv::Mat&)> register_depth;
+  cv::Size raw_depth_size;             ///< of images before that; empty: the colour camera's
+  ImageLoader load_color, load_depth;  ///< none: images are files
 };
 
 /// Checks the listing and decodes up to three of the first ten frames. Throws InputError if none

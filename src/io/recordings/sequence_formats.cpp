@@ -36,11 +36,17 @@ bool use_explicit_calibration(const std::string& folder, const SequenceOptions& 
   const RgbdCalibration calibration = load_calibration(source);
   listing.camera = calibration.camera;
   if (!calibration.depth_camera.registered()) {
-    listing.register_depth = DepthRegistration(listing.camera, calibration.depth_camera);
+    use_depth_camera(calibration.depth_camera, listing);
   }
   const bool preset = source.find_first_of("/.") == std::string::npos;
   listing.calibration_source = preset ? "preset " + source : source;
   return true;
+}
+
+void use_depth_camera(const DepthCamera& depth_camera, SequenceListing& listing) {
+  DepthRegistration registration(listing.camera, depth_camera);
+  listing.raw_depth_size = registration.raw_size();
+  listing.register_depth = std::move(registration);
 }
 
 void take_truth(SequenceListing& listing, const std::function<Trajectory()>& read) {

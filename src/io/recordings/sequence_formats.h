@@ -8,18 +8,21 @@
 #include <string>
 #include <vector>
 
+#include "io/recordings/depth_registration.h"
 #include "io/recordings/listed_sequence.h"
 #include "io/recordings/sequence_reader.h"
 
 namespace dxslam {
 
-// One function per format, each in a file of its own; `folder` exists. All throw InputError.
+// One function per format, each in a file of its own; `folder` exists; that of a bag may be a file.
+// All throw InputError.
 SequenceListing list_tum(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_openloris(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_seven_scenes(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_folder(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_kitti(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_image_folder(const std::string& folder, const SequenceOptions& options);
+SequenceListing list_bag(const std::string& path, const SequenceOptions& options);
 
 /// Whether `folder` holds frames named as those of 7-Scenes.
 bool has_seven_scenes_frames(const std::string& folder);
@@ -38,6 +41,9 @@ std::string folder_name(const std::string& folder);
 /// given, the registration.
 bool use_explicit_calibration(const std::string& folder, const SequenceOptions& options,
                               SequenceListing& listing);
+/// Depth images are those of another camera: they are registered while they are read. To be called
+/// once the listing's own camera is known.
+void use_depth_camera(const DepthCamera& depth_camera, SequenceListing& listing);
 /// Frames from two lists of "stamp file", each colour image with the depth image nearest in time,
 /// or from the association file of the options. Names may have blanks in them. A line that repeats
 /// a stamp is skipped. Fills frames, skipped and notes.

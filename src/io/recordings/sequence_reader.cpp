@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "io/bags/bag_file.h"
 #include "io/primitives/image_listing.h"
 #include "io/primitives/name_order.h"
 #include "io/primitives/text_file.h"
@@ -18,12 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+enum class Has { kNothing, kLists, kCameras, kTopics };  // which options have a meaning
+
 struct Format {
   const char* name;
-  bool (*recognises)(const std::string& folder);  // none: only where no other does
-  SequenceListing (*list)(const std::string& folder, const SequenceOptions& options);
-  bool has_lists = false;    // SequenceOptions::association has a meaning
-  bool has_cameras = false;  // SequenceOptions::eye has a meaning
+  const char* holds;  // what it is known by, for messages
+  bool (*recognises)(const std::string& path);
+  SequenceListing (*list)(const std::string& path, const SequenceOptions& options);
+  Has has = Has::kNothing;
+  bool yields = false;   // only where no other recognises the folder
+  bool is_file = false;  // may be one
 };
 
 bool has(const std::string& folder, const char* name) {
@@ -33,13 +38,18 @@ bool has(const std::string& folder, const char* name) {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> table = {
-      {"tum", [](const std::string& f) { return has(f, "rgb.txt"); }, list_tum, true},
-      {"7scenes", has_seven_scenes_frames, list_seven_scenes},
-      {"openloris", [](const std::string& f) { return has(f, "color.txt"); }, list_openloris, true},
-      {"kitti", [](const std::string& f) { return has(f, "times.txt") && has(f, "calib.txt"); },
-       list_kitti, false, true},
-      {"folder", [](const std::string& f) { return has(f, "images"); }, list_folder},
-      {"images", nullptr, list_image_folder, false, true},
+      {"tum", "rgb.txt and depth.txt", [](const std::string& f) { return has(f, "rgb.txt"); },
+       list_tum, Has::kLists},
+      {"7scenes", "frame-NNNNNN.color.png", has_seven_scenes_frames, list_seven_scenes},
+      {"openloris", "color.txt and aligned_depth.txt",
+       [](const std::string& f) { return has(f, "color.txt"); }, list_openloris, Has::kLists},
+      {"kitti", "times.txt and calib.txt",
+       [](const std::string& f) { return has(f, "times.txt") && has(f, "calib.txt"); }, list_kitti,
+       Has::kCameras},
+      {"folder", "images/ and K.txt", [](const std::string& f) { return has(f, "images"); },
+       list_folder},
+      {"bag", "a .bag, .mcap or .db3 file", is_bag, list_bag, Has::kTopics, true, true},
+      {"images", "image files", nullptr, list_image_folder, Has::kCameras},
   };
   return table;
 }
@@ -48,8 +58,8 @@ const Format& format_named(const std::string& name) {
   for (const Format& format : formats()) {
     if (name == format.name) return format;
   }
-  throw InputError(fmt::format("no sequence format {}, expected auto, {}", in_quotes(name),
-                               fmt::join(sequence_formats(), ", ")));
+  throw InputError(fmt::format("no sequence format {}, expected one of {}", in_quotes(name),
+                               sequence_format_list()));
 }
 
 /// Where a recording lies, and in which format.
@@ -65,6 +75,7 @@ const Format* recognise(const std::string& folder, const Format* wanted) {
   for (const Format& format : formats()) {
     if (format.recognises == nullptr || !format.recognises(folder)) continue;
     if (wanted != nullptr && wanted != &format) continue;
+    if (found != nullptr && format.yields) continue;
     if (found != nullptr) {
       throw InputError(fmt::format("{}: looks like both {} and {}, expected --format to say which",
                                    folder, found->name, format.name));
@@ -96,17 +107,34 @@ std::vector<Place> recordings_below(const std::string& folder, const Format* wan
         folder, below.size(), folder_name(below[0].folder), folder_name(below[1].folder),
         below.size() > 2 ? ", ..." : ""));
   }
-  throw InputError(
-      fmt::format("{}: not a recording known here, expected rgb.txt and depth.txt (tum), "
-                  "frame-NNNNNN.color.png (7scenes), color.txt and aligned_depth.txt (openloris), "
-                  "images/ and K.txt (folder), times.txt and calib.txt (kitti) or image files "
-                  "(images)",
-                  folder));
+  std::vector<std::string> known;
+  for (const Format& format : formats()) {
+    known.push_back(fmt::format("{} ({})", format.holds, format.name));
+  }
+  const std::string last = known.back();
+  known.pop_back();
+  throw InputError(fmt::format("{}: not a recording known here, expected {} or {}", folder,
+                               fmt::join(known, ", "), last));
+}
+
+// The format of a recording that is one file.
+Place file_place(const std::string& path, const Format* wanted) {
+  for (const Format& format : formats()) {
+    if (!format.is_file || !format.recognises(path)) continue;
+    if (wanted == nullptr || wanted == &format) return {path, &format};
+    throw InputError(
+        fmt::format("{}: not a folder, expected one for format {}", path, wanted->name));
+  }
+  refuse_folder(path, {});
 }
 
 // The recording in `path`, or the only one in its subfolders.
 Place find_recording(const std::string& path, const std::string& format) {
+  if (!fs::exists(path)) {
+    throw InputError(fmt::format("{}: no such file or folder, expected a recording", path));
+  }
   const Format* wanted = format == "auto" ? nullptr : &format_named(format);
+  if (!fs::is_directory(path)) return file_place(path, wanted);
   if (const Format* found = recognise(path, wanted)) return {path, found};
   const Format& images = format_named("images");
   if (wanted == &images) return {path, wanted};
@@ -122,22 +150,21 @@ void refuse_unused_options(const Format& format, const SequenceOptions& options)
     throw InputError(fmt::format("option {} is for {}, expected none for a recording of format {}",
                                  option, meant, format.name));
   };
-  if (!options.association.empty() && !format.has_lists) {
+  if (!options.association.empty() && format.has != Has::kLists) {
     refuse("--association", "lists of images (tum, openloris)");
   }
-  if (options.eye != "all" && !format.has_cameras) {
+  if (options.eye != "all" && format.has != Has::kCameras) {
     refuse("--eye", "recordings of two cameras (kitti, images)");
   }
+  if (format.has == Has::kTopics) return;
+  if (!options.color_topic.empty()) refuse("--color-topic", "files of topics (bag)");
+  if (!options.depth_topic.empty()) refuse("--depth-topic", "files of topics (bag)");
 }
 
 SequenceListing list_sequence(const std::string& path, const SequenceOptions& options) {
   if (!(options.max_association_s >= 0.0 && options.max_association_s <= 1e3)) {
     throw InputError(fmt::format("option max_association_s is {} s, expected 0 to 1000",
                                  options.max_association_s));
-  }
-  if (!fs::is_directory(path)) {
-    throw InputError(fmt::format("{}: {}, expected the folder of a recording", path,
-                                 fs::exists(path) ? "not a folder" : "no such folder"));
   }
   if (options.eye != "all" && options.eye != "left" && options.eye != "right") {
     throw InputError(
@@ -165,6 +192,10 @@ const std::vector<std::string>& sequence_formats() {
   return names;
 }
 
+std::string sequence_format_list() {
+  return fmt::format("auto, {}", fmt::join(sequence_formats(), ", "));
+}
+
 std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
                                             const SequenceOptions& options) {
   try {
@@ -172,6 +203,10 @@ std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
   } catch (const fs::filesystem_error& e) {
     throw InputError(fmt::format("{}: {}", e.path1().string(), e.code().message()));
   }
+}
+
+std::string recognised_format(const std::string& path, const std::string& wanted) {
+  return find_recording(path, wanted).format->name;
 }
 
 void require_depth(const RgbdSequence& sequence) {
@@ -183,7 +218,8 @@ void require_depth(const RgbdSequence& sequence) {
 
 TrajectoryFile load_ground_truth(const std::string& file_or_folder, const std::string& format) {
   std::error_code error;
-  if (!fs::is_directory(file_or_folder, error)) return read_trajectory_file(file_or_folder, format);
+  if (!fs::is_directory(file_or_folder, error) && !is_bag(file_or_folder))
+    return read_trajectory_file(file_or_folder, format);
   for (const char* euroc :
        {"state_groundtruth_estimate0/data.csv", "mav0/state_groundtruth_estimate0/data.csv"}) {
     const std::string file = in_folder(file_or_folder, euroc);

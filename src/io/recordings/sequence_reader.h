@@ -19,17 +19,21 @@ struct SequenceOptions {
   /// Camera preset or YAML file; empty = calibration.yaml or camera.yaml of the folder, else what
   /// the format or the folder's name says.
   std::string calibration;
+  /// Topics of a bag to take the images from; empty = the ones that are likeliest.
+  std::string color_topic, depth_topic;
   double max_association_s = 0.02;  ///< largest difference of colour and depth stamps, seconds
   /// all, left or right: which images of a folder in which two cameras take turns, left first
   /// (images), or which camera (kitti; `all` is its left one). Others have one camera.
   std::string eye = "all";
-  /// If false, a folder or images without any calibration get a pinhole camera with a focal length
-  /// of the image width: for what looks at appearance only.
+  /// If false, a folder, bag or images without any calibration get a pinhole camera with a focal
+  /// length of the image width: for what looks at appearance only.
   bool needs_calibration = true;
 };
 
-/// tum, 7scenes, openloris, kitti, folder, images.
+/// The names of the formats, in the order in which they are listed below.
 const std::vector<std::string>& sequence_formats();
+/// "auto" and these, for help and messages.
+std::string sequence_format_list();
 
 /// Opens a recording. Lists, calibration and trajectories are read and checked at once, a few
 /// images are decoded to check size and depth scale, all others are read on demand.
@@ -50,10 +54,19 @@ const std::vector<std::string>& sequence_formats();
 /// - images: image files, in the folder or in its subfolder Images (City Centre and New College of
 ///   FAB-MAP: left and right in turn), in the order of their names, stamp index / fps; no depth.
 ///
+/// - bag: a ROS 1 bag, an MCAP file or a ROS 2 bag in SQLite, or a folder of its parts; pictures,
+/// raw
+///   or compressed, and calibration from topics; depth of another camera is registered by the
+///   transforms in it.
+///
 /// Throws InputError, one sentence with file, line and what was expected, for everything that makes
 /// the recording as a whole unusable. Single bad frames are left to RgbdSequence::read.
 std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
                                             const SequenceOptions& options = {});
+
+/// The format that open_sequence() reads the recording at `path` as, where `wanted` is auto or a
+/// format. Throws InputError for what is no recording.
+std::string recognised_format(const std::string& path, const std::string& wanted = "auto");
 
 /// Throws InputError for a recording in which no frame has a depth image: for whatever needs depth.
 void require_depth(const RgbdSequence& sequence);

@@ -13,8 +13,9 @@ TEST(SequenceReader, SaysWhatItLookedFor) {
   const TestFolder folder("nothing");
   expect_input_error([&] { open_sequence(folder.path()); },
                      {"nothing", "rgb.txt", "frame-NNNNNN", "aligned_depth.txt", "images/"});
-  expect_input_error([&] { open_sequence(folder / "none"); }, {"none", "no such folder"});
-  expect_input_error([&] { open_sequence(folder.write("file", "x")); }, {"not a folder"});
+  expect_input_error([&] { open_sequence(folder / "none"); }, {"none", "no such file or folder"});
+  expect_input_error([&] { open_sequence(folder.write("file", "x")); },
+                     {"file", "not a recording", ".mcap"});
 }
 
 TEST(SequenceReader, TakesTheOnlyRecordingInASubfolder) {
@@ -60,7 +61,7 @@ TEST(SequenceReader, RefusesAmbiguousFoldersAndUnknownFormats) {
   expect_input_error([&] { open_sequence(folder.path(), options); }, {"color.txt", "empty list"});
   options.format = "euroc";
   expect_input_error([&] { open_sequence(folder.path(), options); },
-                     {"'euroc'", "auto, tum, 7scenes, openloris, kitti, folder, images"});
+                     {"'euroc'", "auto, tum, 7scenes, openloris, kitti, folder, bag, images"});
 }
 
 TEST(SequenceReader, LoadsTheTruthOfAFileOrAFolder) {

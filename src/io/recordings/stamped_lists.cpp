@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/primitives/text_file.h"
+#include "io/recordings/nearest_in_time.h"
 #include "io/recordings/sequence_formats.h"
 #include "io/recordings/stamp_hint.h"
 
@@ -181,16 +182,6 @@ void read_associations(const std::string& folder, const std::string& path,
   skip_repeated(colors.repeated, listing);
 }
 
-const StampedFile& nearest(const std::vector<StampedFile>& list, double stamp) {
-  const auto after =
-      std::lower_bound(list.begin(), list.end(), stamp,
-                       [](const StampedFile& item, double value) { return item.stamp < value; });
-  if (after == list.begin()) return *after;
-  const auto before = std::prev(after);
-  if (after == list.end() || stamp - before->stamp <= after->stamp - stamp) return *before;
-  return *after;
-}
-
 // What explains that no stamp has a partner.
 std::string unit_hint(const std::string& name, const StampedList& list) {
   std::vector<double> stamps;
@@ -209,10 +200,10 @@ void associate_lists(const std::string& folder, const std::string& color_list,
   }
   const StampedList colors = read_list(folder, color_list);
   const StampedList depths = read_list(folder, depth_list);
-  double least = std::abs(nearest(depths.files, colors.files.front().stamp).stamp -
+  double least = std::abs(nearest_in_time(depths.files, colors.files.front().stamp)->stamp -
                           colors.files.front().stamp);
   for (const StampedFile& color : colors.files) {
-    const StampedFile& depth = nearest(depths.files, color.stamp);
+    const StampedFile& depth = *nearest_in_time(depths.files, color.stamp);
     const double difference = std::abs(depth.stamp - color.stamp);
     least = std::min(least, difference);
     if (difference <= options.max_association_s) {

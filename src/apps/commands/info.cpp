@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/commands.h"
+#include "apps/console.h"
+#include "apps/open_recording.h"
+#include "apps/recording_report.h"
+#include "io/primitives/atomic_file.h"
+#include "io/primitives/json_text.h"
+#include "io/recordings/recording_info.h"
+
+namespace dxslam::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoArguments {
+  std::string source;
+  SequenceOptions reader;
+  std::string json;
+};
+
+std::string describe(const StreamTiming& timing) {
+  if (timing.rate == 0.0) return "";
+  const std::string rate = fmt::format(", {:.1f} per second", timing.rate);
+  if (timing.gaps == 0) return rate + ", no gap";
+  return rate + fmt::format(", {} gaps, the longest of {:.2f} s", timing.gaps, timing.longest_gap);
+}
+
+void print_topics(const std::vector<TopicInfo>& topics) {
+  for (const TopicInfo& topic : topics) {
+    print("topic {}\n  {}{}{}: {} messages{}\n", topic.name, topic.type,
+          topic.content.empty() ? "" : ", ", topic.content, topic.timing.count,
+          describe(topic.timing));
+  }
+}
+
+void print_camera(const RgbdSequence& sequence) {
+  const Camera& c = sequence.camera();
+  print("calibration from {}\n", sequence.facts().calibration_source);
+  print("  {}x{}, fx {:.2f}, fy {:.2f}, cx {:.2f}, cy {:.2f}\n", c.width, c.height, c.fx, c.fy,
+        c.cx, c.cy);
+  if (!c.has_distortion()) return print("  no distortion\n");
+  print("  k1 {:g}, k2 {:g}, p1 {:g}, p2 {:g}, k3 {:g}\n", c.k1, c.k2, c.p1, c.p2, c.k3);
+}
+
+void print_depth(const RgbdSequence& sequence) {
+  const RecordingFacts& facts = sequence.facts();
+  if (!facts.has_depth) return;
+  print("depth: {:g} raw units per metre", sequence.camera().depth_factor);
+  if (facts.depth_share == 0.0) return print(", no reading in the first images\n");
+  print(", median {:.2f} m in the first images, {:.0f} % of their pixels\n", facts.median_depth,
+        100.0 * facts.depth_share);
+}
+
+// What a user may miss, one sentence each.
+std::vector<std::string> missing_of(const RecordingInfo& info) {
+  if (info.sequence == nullptr) return {info.problem};
+  std::vector<std::string> missing;
+  if (!info.sequence->facts().has_depth) {
+    missing.emplace_back("depth images, which `dxslam run` needs");
+  }
+  const std::vector<SkippedFrame>& skipped = info.sequence->skipped();
+  if (!skipped.empty()) {
+    missing.push_back(
+        fmt::format("{} images were left out; the first: {}", skipped.size(), skipped[0].reason));
+  }
+  return missing;
+}
+
+void print_info(const InfoArguments& arguments, const RecordingInfo& info) {
+  print("{}: recording of format {}\n", arguments.source, info.format);
+  print_topics(info.topics);
+  if (info.sequence != nullptr) {
+    const RgbdSequence& sequence = *info.sequence;
+    print("frames: {}{} depth, {:.1f} s from {:.6f} on{}\n", sequence.size(),
+          sequence.facts().has_depth ? " with" : " without", info.frames.last - info.frames.first,
+          info.frames.first, describe(info.frames));
+    print_camera(sequence);
+    print_depth(sequence);
+    print("true trajectory: {}\n", sequence.ground_truth().empty()
+                                       ? "none"
+                                       : fmt::format("{} poses", sequence.ground_truth().size()));
+    for (const std::string& note : sequence.facts().notes) print("note: {}\n", note);
+  }
+  const std::vector<std::string> missing = missing_of(info);
+  for (const std::string& what : missing) print("missing: {}\n", what);
+  if (missing.empty()) print("missing: nothing\n");
+}
+
+Json timing_json(const StreamTiming& timing) {
+  return {
+      {"count", timing.count}, {"first_s", timing.first},
+      {"last_s", timing.last}, {"rate_hz", timing.rate > 0.0 ? Json(timing.rate) : Json(nullptr)},
+      {"gaps", timing.gaps},   {"longest_gap_s", timing.longest_gap}};
+}
+
+Json info_json(const InfoArguments& arguments, const RecordingInfo& info) {
+  Json json{{"source", arguments.source}, {"format", info.format}, {"topics", Json::array()}};
+  for (const TopicInfo& topic : info.topics) {
+    Json row{{"name", topic.name}, {"type", topic.type}, {"content", topic.content}};
+    row.update(timing_json(topic.timing));
+    json["topics"].push_back(std::move(row));
+  }
+  json["usable"] = info.sequence != nullptr;
+  json["missing"] = missing_of(info);
+  if (info.sequence == nullptr) return json;
+  json["frames"] = timing_json(info.frames);
+  json["frames"]["with_depth"] = info.sequence->facts().has_depth;
+  json.update(recording_json(*info.sequence));
+  json["true_poses"] = info.sequence->ground_truth().size();
+  json["notes"] = info.sequence->facts().notes;
+  return json;
+}
+
+void tell(const InfoArguments& arguments) {
+  const RecordingInfo info = inspect_recording(arguments.source, arguments.reader);
+  print_info(arguments, info);
+  if (!arguments.json.empty()) {
+    write_file_atomically(arguments.json, to_json_text(info_json(arguments, info)));
+  }
+  if (info.sequence == nullptr) throw CLI::RuntimeError(kBadInput);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  const auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* command = app.add_subcommand(
+      "info", "tell what a recording holds: streams, rates, gaps, calibration, what is missing");
+  command->add_option("SOURCE", arguments->source, "recording: a folder or a bag")->required();
+  add_reader_options(*command, arguments->reader);
+  command->add_option("--json", arguments->json, "also write it to a JSON file");
+  command->callback([arguments] { tell(*arguments); });
+}
+
+}  // namespace dxslam::apps
