@@ -31,12 +31,26 @@ std::string describe(const StreamTiming& timing) {
   return rate + fmt::format(", {} gaps, the longest of {:.2f} s", timing.gaps, timing.longest_gap);
 }
 
+// What a recording of a camera is made of.
+bool is_of_cameras(const TopicInfo& topic) {
+  return !topic.content.empty() || topic.type == "sensor_msgs/CameraInfo" ||
+         topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage";
+}
+
+// On one page: all topics of cameras, and others only where they are few.
 void print_topics(const std::vector<TopicInfo>& topics) {
+  constexpr std::size_t kFew = 15;
+  std::size_t others = 0;
   for (const TopicInfo& topic : topics) {
-    print("topic {}\n  {}{}{}: {} messages{}\n", topic.name, topic.type,
+    if (topics.size() > kFew && !is_of_cameras(topic)) {
+      ++others;
+      continue;
+    }
+    print("topic {}\n  {}{}{}: {} message{}{}\n", topic.name, topic.type,
           topic.content.empty() ? "" : ", ", topic.content, topic.timing.count,
-          describe(topic.timing));
+          topic.timing.count == 1 ? "" : "s", describe(topic.timing));
   }
+  if (others > 0) print("and {} topics of other things, which --json lists\n", others);
 }
 
 void print_camera(const RgbdSequence& sequence) {

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <tuple>
 
 #include "core/error.h"
+#include "io/bags/realsense_bag.h"
 #include "io/primitives/limits.h"
 #include "io/primitives/text_file.h"
 
@@ -117,7 +119,10 @@ PictureStream stream_of(const std::string& message, const BagTopic& topic, std::
                    static_cast<int>(std::min(image.height, limits::kImageSide + 1))};
     header = image.header;
   }
-  stream.frame = frame_name(header.frame);
+  // There the name is a kind of clock.
+  const std::string realsense = realsense_stream(stream.name);
+  const bool is_clock = !realsense.empty() && header.frame.size() <= 1;
+  stream.frame = frame_name(is_clock ? realsense : header.frame);
   stream.depth = is_depth_encoding(stream.encoding, stream.name);
   return stream;
 }
@@ -125,21 +130,26 @@ PictureStream stream_of(const std::string& message, const BagTopic& topic, std::
 // a_from_b of all that the topics of transforms, static ones or others, say.
 using Transforms = std::map<std::string, std::map<std::string, SE3>>;
 
+void add_transforms(const std::vector<RosTransform>& transforms, Transforms& edges) {
+  for (const RosTransform& t : transforms) {
+    const std::string parent = frame_name(t.parent);
+    const std::string child = frame_name(t.child);
+    edges[parent].try_emplace(child, t.parent_from_child);
+    edges[child].try_emplace(parent, t.parent_from_child.inverse());
+  }
+}
+
 void read_transforms(BagFile& bag, bool of_static, Transforms& edges) {
-  for (const BagEntry& entry : bag.entries()) {
-    const BagTopic& topic = bag.topics()[entry.topic];
+  for (std::uint32_t i = 0; i < bag.topics().size(); ++i) {
+    const BagTopic& topic = bag.topics()[i];
     if (topic.type != "tf2_msgs/TFMessage" && topic.type != "tf/tfMessage") continue;
     if (contains(topic.name, "static") != of_static) continue;
-    try {
-      for (const RosTransform& t :
-           read_ros_transforms(bag.read(entry), topic.encoding, topic.name)) {
-        const std::string parent = frame_name(t.parent);
-        const std::string child = frame_name(t.child);
-        edges[parent].try_emplace(child, t.parent_from_child);
-        edges[child].try_emplace(parent, t.parent_from_child.inverse());
+    for (const BagEntry& entry : in_file_order(bag, i)) {
+      try {
+        add_transforms(read_ros_transforms(bag.read(entry), topic.encoding, topic.name), edges);
+      } catch (const InputError&) {
+        continue;
       }
-    } catch (const InputError&) {
-      continue;
     }
   }
 }
@@ -180,6 +190,16 @@ std::vector<PictureStream> find_picture_streams(BagFile& bag) {
   return streams;
 }
 
+std::vector<BagEntry> in_file_order(const BagFile& bag, std::uint32_t topic) {
+  std::vector<BagEntry> entries;
+  std::copy_if(bag.entries().begin(), bag.entries().end(), std::back_inserter(entries),
+               [&](const BagEntry& entry) { return entry.topic == topic; });
+  std::sort(entries.begin(), entries.end(), [](const BagEntry& a, const BagEntry& b) {
+    return std::tie(a.part, a.chunk, a.offset) < std::tie(b.part, b.chunk, b.offset);
+  });
+  return entries;
+}
+
 PictureStream choose_color(const std::vector<PictureStream>& streams, const std::string& wanted,
                            const std::string& where) {
   if (!wanted.empty()) return stream_named(streams, wanted, where);
@@ -211,6 +231,7 @@ std::optional<PictureStream> choose_depth(const std::vector<PictureStream>& stre
 std::optional<FoundCameraInfo> camera_info_of(BagFile& bag, const PictureStream& stream) {
   std::optional<FoundCameraInfo> of_same_frame;
   const std::string beside = parent_of(base_topic(stream.name));
+  const std::string realsense = realsense_stream(stream.name);
   std::vector<bool> seen(bag.topics().size(), false);
   for (const BagEntry& entry : bag.entries()) {
     const BagTopic& topic = bag.topics()[entry.topic];
@@ -221,6 +242,7 @@ std::optional<FoundCameraInfo> camera_info_of(BagFile& bag, const PictureStream&
       if (!(found.info.k[0] > 0.0)) continue;  // of a camera that was not calibrated
       seen[entry.topic] = true;
       if (parent_of(topic.name) == beside) return found;
+      if (!realsense.empty() && topic.name == realsense + "/info/camera_info") return found;
       const bool same_frame =
           !stream.frame.empty() && frame_name(found.info.header.frame) == stream.frame;
       if (same_frame && !of_same_frame) of_same_frame = std::move(found);

@@ -29,6 +29,10 @@ struct PictureStream {
 /// out.
 std::vector<PictureStream> find_picture_streams(BagFile& bag);
 
+/// The messages of a topic in the order in which they lie in the file: read so, each chunk is
+/// unpacked once.
+std::vector<BagEntry> in_file_order(const BagFile& bag, std::uint32_t topic);
+
 /// The stream called `wanted`, or if that is empty the one that an RGB-D recording is likely made
 /// of: for colour a name with color or rgb and no infra. Throws InputError naming what there is if
 /// there is none, or for a name that is not there. `where` begins messages.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <optional>
 
 #include "core/error.h"
 
@@ -71,6 +72,20 @@ class FieldReader {
     header.stamp_ns = seconds * 1'000'000'000 + number<std::uint32_t>();
     header.frame = text();
     return header;
+  }
+
+  // Nothing where the numbers are no transform.
+  std::optional<SE3> transform() {
+    Eigen::Vector3d translation;
+    for (int i = 0; i < 3; ++i) translation[i] = number<double>();
+    Eigen::Quaterniond rotation;
+    for (double* value : {&rotation.x(), &rotation.y(), &rotation.z(), &rotation.w()}) {
+      *value = number<double>();
+    }
+    constexpr double kNorm = 0.5;  // a rotation has 1
+    const double norm = rotation.norm();
+    if (!translation.allFinite() || !(norm > kNorm && norm < 1.0 / kNorm)) return std::nullopt;
+    return SE3(rotation.normalized(), translation);
   }
 
  private:
@@ -146,6 +161,22 @@ RosCameraInfo read_ros_camera_info(std::string_view bytes, MessageEncoding encod
   return info;
 }
 
+std::string read_ros_string(std::string_view bytes, MessageEncoding encoding,
+                            const std::string& where) {
+  return FieldReader(bytes, encoding, where).text();
+}
+
+float read_ros_float(std::string_view bytes, MessageEncoding encoding, const std::string& where) {
+  return FieldReader(bytes, encoding, where).number<float>();
+}
+
+SE3 read_ros_transform(std::string_view bytes, MessageEncoding encoding, const std::string& where) {
+  FieldReader reader(bytes, encoding, where);
+  const std::optional<SE3> transform = reader.transform();
+  if (transform) return *transform;
+  throw InputError(where + ": a transform that is none, expected finite numbers and a rotation");
+}
+
 std::vector<RosTransform> read_ros_transforms(std::string_view bytes, MessageEncoding encoding,
                                               const std::string& where) {
   FieldReader reader(bytes, encoding, where);
@@ -154,15 +185,9 @@ std::vector<RosTransform> read_ros_transforms(std::string_view bytes, MessageEnc
     RosTransform transform;
     transform.parent = reader.header().frame;
     transform.child = reader.text();
-    Eigen::Vector3d translation;
-    for (int i = 0; i < 3; ++i) translation[i] = reader.number<double>();
-    Eigen::Quaterniond rotation;
-    rotation.x() = reader.number<double>();
-    rotation.y() = reader.number<double>();
-    rotation.z() = reader.number<double>();
-    rotation.w() = reader.number<double>();
-    if (!translation.allFinite() || !(rotation.norm() > 0.5)) continue;
-    transform.parent_from_child = {rotation.normalized(), translation};
+    const std::optional<SE3> parent_from_child = reader.transform();
+    if (!parent_from_child) continue;
+    transform.parent_from_child = *parent_from_child;
     transforms.push_back(std::move(transform));
   }
   return transforms;

@@ -63,6 +63,13 @@ RosCompressedImage read_ros_compressed_image(std::string_view bytes, MessageEnco
                                              const std::string& where);
 RosCameraInfo read_ros_camera_info(std::string_view bytes, MessageEncoding encoding,
                                    const std::string& where);
+/// std_msgs/String and std_msgs/Float32
+std::string read_ros_string(std::string_view bytes, MessageEncoding encoding,
+                            const std::string& where);
+float read_ros_float(std::string_view bytes, MessageEncoding encoding, const std::string& where);
+/// geometry_msgs/Transform
+SE3 read_ros_transform(std::string_view bytes, MessageEncoding encoding, const std::string& where);
+/// tf2_msgs/TFMessage, without transforms that are none
 std::vector<RosTransform> read_ros_transforms(std::string_view bytes, MessageEncoding encoding,
                                               const std::string& where);
 

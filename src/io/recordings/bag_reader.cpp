@@ -5,12 +5,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <tuple>
 
 #include "core/error.h"
 #include "io/bags/bag_streams.h"
+#include "io/bags/realsense_bag.h"
 #include "io/bags/ros_picture.h"
 #include "io/primitives/limits.h"
+#include "io/recordings/inverse_distortion.h"
 #include "io/recordings/nearest_in_time.h"
 #include "io/recordings/sequence_formats.h"
 
@@ -79,8 +84,7 @@ std::vector<StampedEntry> stamped_entries(BagFile& bag, const PictureStream& str
   std::vector<StampedEntry> list;
   std::size_t damaged = 0;
   std::string first_damaged;
-  for (const BagEntry& entry : bag.entries()) {
-    if (entry.topic != stream.topic) continue;
+  for (const BagEntry& entry : in_file_order(bag, stream.topic)) {
     if (list.size() == limits::kFrames) {
       throw InputError(fmt::format("{}: more than {} images of {}, expected less", listing.name,
                                    limits::kFrames, stream.name));
@@ -98,8 +102,9 @@ std::vector<StampedEntry> stamped_entries(BagFile& bag, const PictureStream& str
     listing.notes.push_back(fmt::format("{} images of {} were left out; the first: {}", damaged,
                                         stream.name, first_damaged));
   }
-  std::stable_sort(list.begin(), list.end(),
-                   [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  std::sort(list.begin(), list.end(), [](const StampedEntry& a, const StampedEntry& b) {
+    return std::tie(a.stamp, a.entry.recorded_ns) < std::tie(b.stamp, b.entry.recorded_ns);
+  });
   return list;
 }
 
@@ -146,8 +151,14 @@ void pair_streams(BagPictures& pictures, const SequenceOptions& options, Sequenc
                   pictures.depth() ? pictures.depth()->name : "depth", options.max_association_s));
 }
 
+bool is_radial_tangential(const std::string& model) {
+  static const char* const kNames[] = {"plumb_bob", "rational_polynomial", "Brown Conrady",
+                                       "Modified Brown Conrady", "Inverse Brown Conrady"};
+  return std::find(std::begin(kNames), std::end(kNames), model) != std::end(kNames);
+}
+
 // The camera of the image as it is on the topic: raw, or rectified where its name says so.
-Camera camera_of(const FoundCameraInfo& found, const PictureStream& stream) {
+Camera camera_of(const FoundCameraInfo& found, const PictureStream& stream, bool inverse = false) {
   const RosCameraInfo& info = found.info;
   const bool rectified = says_rectified(stream) && info.p[0] > 0.0;
   Camera camera;
@@ -162,15 +173,20 @@ Camera camera_of(const FoundCameraInfo& found, const PictureStream& stream) {
       std::find_if(info.d.rbegin(), info.d.rend(), [](double value) { return value != 0.0; });
   const auto count = static_cast<std::size_t>(info.d.rend() - used);
   if (rectified || count == 0) return camera;
-  const bool radial_tangential =
-      info.distortion_model == "plumb_bob" || info.distortion_model == "rational_polynomial";
-  if (!radial_tangential || count > 5) {
+  if (!is_radial_tangential(info.distortion_model) || count > 5) {
     throw InputError(
         fmt::format("{}: distortion model {} with {} numbers, expected plumb_bob with at most 5",
                     found.topic, info.distortion_model, count));
   }
+  std::array<double, 5> d{};
+  std::copy_n(info.d.begin(), count, d.begin());
+  if (inverse) {
+    camera.prepare(found.topic);  // divides by the focal lengths
+    set_inverse_distortion(d, camera);
+    return camera;
+  }
   double* const fields[] = {&camera.k1, &camera.k2, &camera.p1, &camera.p2, &camera.k3};
-  for (std::size_t i = 0; i < count; ++i) *fields[i] = info.d[i];
+  for (std::size_t i = 0; i < d.size(); ++i) *fields[i] = d[i];
   return camera;
 }
 
@@ -240,7 +256,11 @@ void register_depth(BagPictures& pictures, SequenceListing& listing) {
     }
     return;
   }
-  const auto color_from_depth = find_transform(pictures.bag(), color.frame, depth.frame);
+  auto color_from_depth = realsense_transform(pictures.bag(), realsense_stream(color.name),
+                                              realsense_stream(depth.name));
+  if (!color_from_depth) {
+    color_from_depth = find_transform(pictures.bag(), color.frame, depth.frame);
+  }
   if (!color_from_depth) {
     if (same_lens(lens, listing.camera)) return;
     throw InputError(fmt::format(
@@ -260,6 +280,7 @@ void find_calibration(BagPictures& pictures, const std::string& path,
                       const SequenceOptions& options, SequenceListing& listing) {
   if (!use_explicit_calibration(path, options, listing)) {
     const auto found = camera_info_of(pictures.bag(), pictures.color());
+    const std::string realsense = realsense_stream(pictures.color().name);
     if (!found && (options.needs_calibration || pictures.color().size.empty())) {
       throw InputError(fmt::format(
           "{}: no calibration: the bag has no camera_info beside {}, expected --calibration with "
@@ -267,8 +288,14 @@ void find_calibration(BagPictures& pictures, const std::string& path,
           path, pictures.color().name));
     }
     listing.calibration_source = found ? found->topic : "no file";
-    listing.camera =
-        found ? camera_of(*found, pictures.color()) : made_up_camera(pictures.color().size);
+    const bool inverse = !realsense.empty() && has_inverse_distortion(pictures.bag(), realsense);
+    listing.camera = found ? camera_of(*found, pictures.color(), inverse)
+                           : made_up_camera(pictures.color().size);
+    const auto factor =
+        pictures.depth()
+            ? realsense_depth_factor(pictures.bag(), realsense_stream(pictures.depth()->name))
+            : std::nullopt;
+    if (factor) listing.camera.depth_factor = *factor;
     listing.camera.fps = median_rate(listing.frames);
     listing.camera.prepare(listing.calibration_source);
   }

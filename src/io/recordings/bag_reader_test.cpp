@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "io/primitives/test_folder.h"
 #include "io/recordings/recording_info.h"
 #include "io/recordings/sequence_reader.h"
@@ -248,6 +251,92 @@ TEST(BagReader, RefusesAFolderOfSeveralBags) {
   folder.write("tuesday.bag", bag.bytes());
   expect_input_error([&] { open_sequence(folder.path()); },
                      {"several bags", "monday.bag", "tuesday.bag"});
+}
+
+// What tests/data/bags/make_realsense.py recorded with librealsense.
+class RealSenseRecording : public testing::TestWithParam<const char*> {
+ protected:
+  std::unique_ptr<RgbdSequence> sequence_ =
+      open_sequence(std::string(DXSLAM_SOURCE_DIR) + "/tests/data/bags/" + GetParam());
+};
+
+TEST_P(RealSenseRecording, HasItsCalibration) {
+  const Camera& camera = sequence_->camera();
+  EXPECT_EQ(sequence_->size(), 3U);
+  EXPECT_EQ(camera.width, 64);
+  EXPECT_EQ(camera.fx, 60.0);
+  EXPECT_EQ(camera.fy, 61.0);
+  EXPECT_EQ(camera.cx, 31.0);
+  EXPECT_EQ(camera.depth_factor, 2000.0);
+  // "Inverse Brown Conrady": the polynomial gives the ideal pixel.
+  Camera polynomial = camera;
+  polynomial.k1 = 0.05;
+  polynomial.k2 = -0.02;
+  polynomial.p1 = 0.001;
+  polynomial.p2 = 0.002;
+  polynomial.k3 = 0.003;
+  for (const Eigen::Vector2d& raw : {Eigen::Vector2d(2, 3), {60, 5}, {30, 40}}) {
+    EXPECT_LT((camera.undistort(raw) - polynomial.distort(raw)).norm(), 0.02);
+  }
+}
+
+TEST_P(RealSenseRecording, RegistersDepth) {
+  const auto image = sequence_->read(1);
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->color.at<cv::Vec3b>(10, 20), cv::Vec3b(7, 40, 36));
+  const SE3 color_from_depth(so3_exp({0, 0, 0.1}), Eigen::Vector3d(0.05, 0.01, 0.002));
+  for (const Eigen::Vector2i& pixel : {Eigen::Vector2i(24, 18), {10, 8}, {40, 30}}) {
+    const double depth = (2100 + pixel.y() + pixel.x()) / 2000.0;
+    const Eigen::Vector3d point =
+        color_from_depth *
+        Eigen::Vector3d((pixel.x() - 23) / 40.0 * depth, (pixel.y() - 16) / 41.0 * depth, depth);
+    const Eigen::Vector2d seen = sequence_->camera().distort(sequence_->camera().project(point));
+    EXPECT_NEAR(image->depth.at<float>(static_cast<int>(std::lround(seen.y())),
+                                       static_cast<int>(std::lround(seen.x()))),
+                point.z(), 2e-3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Versions, RealSenseRecording,
+                         testing::Values("realsense.bag", "realsense.db3"),
+                         [](const auto& given) { return std::string(given.param).substr(10); });
+
+// What is damaged anywhere is refused, skipped or read as something else; nothing but InputError.
+TEST(BagReader, SurvivesRandomDamage) {
+  const TestFolder folder;
+  TestBag bag;
+  add_colors(bag);
+  bag.add_camera_info("/camera/depth/camera_info", "depth", test_camera(32, 24, 30.0));
+  bag.add_transform("color", "depth", 0.01, 0.0, 0.0);
+  add_depths(bag, "/camera/depth/image_rect_raw", "depth", test_depth(2000, 32, 24));
+  const std::string whole = bag.bytes();
+  // Pixels are most of the bytes and can be anything, so damage is put where all else is.
+  std::vector<std::size_t> places;
+  for (const char* around : {"#ROSBAG", "camera_info", "image_raw", "image_rect_raw",
+                             "conn=", "bgr8", "16UC1", "plumb_bob", "tf_static", "op="}) {
+    for (std::size_t at = whole.find(around); at != std::string::npos;
+         at = whole.find(around, at + 1)) {
+      places.push_back(at);
+    }
+  }
+  std::mt19937 random(16);
+  int usable = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::string bytes = whole;
+    for (std::uint32_t flips = 1 + random() % 3; flips > 0; --flips) {
+      const std::size_t at = places[random() % places.size()] + random() % 64;
+      if (at >= 24) bytes[std::min(at - 24, bytes.size() - 1)] = static_cast<char>(random());
+    }
+    if (random() % 4 == 0) bytes.resize(random() % bytes.size());
+    try {
+      const auto sequence = open_sequence(folder.write("a.bag", bytes));
+      for (std::size_t i = 0; i < sequence->size(); ++i) sequence->read(i);
+      ++usable;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), testing::Not(HasSubstr("\n")));
+    }
+  }
+  EXPECT_GT(usable, 20) << "damage is small enough to come far";
 }
 
 TEST(RecordingInfo, TellsTopicsFramesAndGaps) {
