@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "core/error.h"
 #include "evaluation/mat_file.h"
 #include "io/primitives/image_file.h"
+#include "io/primitives/input_file.h"
 #include "io/primitives/text_file.h"
 
 namespace dxslam {
@@ -88,11 +88,12 @@ LoopTruth from_text(const std::string& path) {
   return *std::move(truth);
 }
 
-bool looks_like_image(const std::string& path) {
-  char start[16] = {};
-  std::ifstream file(path, std::ios::binary);
-  file.read(start, sizeof(start));
-  return begins_as_image({start, static_cast<std::size_t>(file.gcount())});
+// What a file begins with; nothing is waited for where it is a pipe.
+std::string start_of(const std::string& path) {
+  const InputFile file(path, "a matrix of true loops");
+  std::string start(16, '\0');
+  start.resize(file.read(start.data(), start.size()));
+  return start;
 }
 
 bool has_loop(const LoopTruth& truth) {
@@ -129,8 +130,9 @@ void LoopTruth::set(std::size_t a, std::size_t b, PairTruth truth) {
 }
 
 LoopTruth read_loop_truth(const std::string& path) {
-  LoopTruth truth = looks_like_mat_file(path) ? from_mat(path)
-                    : looks_like_image(path)  ? from_image(path)
+  const std::string start = start_of(path);
+  LoopTruth truth = begins_as_mat_file(start) ? from_mat(path)
+                    : begins_as_image(start)  ? from_image(path)
                                               : from_text(path);
   if (!has_loop(truth)) {
     throw InputError(fmt::format("{}: no true loop in it, expected at least one", path));

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "evaluation/loop_truth.h"
 
+#include <sys/stat.h>
 #include <zlib.h>
 
 #include <cstdint>
@@ -203,6 +204,8 @@ TEST(LoopTruth, RefusesWhatIsNoSquareMatrixOfLoops) {
   expect_input_error([&] { read_loop_truth(folder.write("none.txt", "0 0\n0 0\n")); },
                      {"none.txt", "no true loop"});
   expect_input_error([&] { read_loop_truth(folder / "absent.txt"); }, {"absent.txt", "no such"});
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);  // which nobody writes to
+  expect_input_error([&] { read_loop_truth(folder / "pipe"); }, {"pipe", "not a regular file"});
 }
 
 TEST(LoopTruth, TakesOneCameraOfSeveral) {

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -347,12 +346,7 @@ std::uint64_t entries(const MatShape& shape) { return std::uint64_t{shape.rows} 
 
 }  // namespace
 
-bool looks_like_mat_file(const std::string& path) {
-  std::array<char, 7> start{};
-  std::ifstream file(path, std::ios::binary);
-  return file.read(start.data(), start.size()) &&
-         std::string_view(start.data(), start.size()) == "MATLAB ";
-}
+bool begins_as_mat_file(std::string_view start) { return start.substr(0, 7) == "MATLAB "; }
 
 MatShape read_mat(const std::string& path, const std::function<void(const MatShape&)>& begin,
                   const MatEntryVisitor& entry) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace dxslam {
 
@@ -18,8 +19,9 @@ struct MatShape {
 /// Called for entries that are not zero, column by column, rows rising.
 using MatEntryVisitor = std::function<void(std::size_t row, std::size_t column, double value)>;
 
-/// Whether the file starts as MATLAB files do (versions 5 to 7, and 7.3, which read_mat refuses).
-bool looks_like_mat_file(const std::string& path);
+/// Whether a file with this beginning is MATLAB's (versions 5 to 7, and 7.3, which read_mat
+/// refuses).
+bool begins_as_mat_file(std::string_view start);
 
 /// Reads the largest real two-dimensional matrix of a MATLAB v5 file (MATLAB 5 to 7, Octave
 /// `-mat`): dense or sparse, logical or of any number type, compressed or not, little-endian.

@@ -8,10 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <vector>
 
-#include "core/error.h"
+#include "io/primitives/input_file.h"
 
 namespace dxslam {
 namespace {
@@ -120,16 +119,13 @@ std::string sha256(const void* data, std::size_t size) {
 }
 
 std::string sha256_of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", path));
+  const InputFile file(path, "a model");
   Hasher hasher;
   std::vector<char> chunk(1 << 16);
-  while (file) {
-    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-    hasher.update(reinterpret_cast<const std::uint8_t*>(chunk.data()),
-                  static_cast<std::size_t>(file.gcount()));
+  for (std::size_t got = chunk.size(); got == chunk.size();) {
+    got = file.read(chunk.data(), chunk.size());
+    hasher.update(reinterpret_cast<const std::uint8_t*>(chunk.data()), got);
   }
-  if (file.bad()) throw InputError(fmt::format("{}: reading failed", path));
   return hasher.finish();
 }
 

@@ -11,6 +11,8 @@
 #include "features/data_directory.h"
 #include "features/sha256.h"
 #include "io/formats/options_yaml.h"
+#include "io/primitives/input_file.h"
+#include "io/primitives/lfs_pointer.h"
 #include "io/primitives/text_file.h"
 #include "io/primitives/yaml_map.h"
 
@@ -220,6 +222,15 @@ void check_size_multiple(const YamlMap& top, const ModelManifest& manifest) {
   }
 }
 
+// Throws also for what is no file at all, such as a pipe.
+void refuse_pointer(const std::string& path) {
+  const InputFile file(path, "a model");
+  std::string start(64, '\0');
+  start.resize(file.read(start.data(), start.size()));
+  const std::string_view hint = lfs_hint(start);
+  if (!hint.empty()) throw InputError(fmt::format("{}: no model{}", path, hint));
+}
+
 void verify_hash(const std::string& path, const std::string& expected) {
   if (expected.empty()) return;
   const std::string found = sha256_of_file(path);
@@ -270,13 +281,17 @@ void verify_model_file(const ModelFile& file) {
                     "TensorFlow .pb or saved model)",
                     file.path));
   }
-  if (fs::is_regular_file(path)) verify_hash(file.path, file.sha256);
+  if (!fs::is_directory(path)) {
+    refuse_pointer(file.path);
+    verify_hash(file.path, file.sha256);
+  }
   if (path.extension() != ".xml") return;
   const std::string weights = fs::path(path).replace_extension(".bin").string();
   if (!fs::exists(weights)) {
     throw InputError(
         fmt::format("{}: no such file, expected the weights of {}", weights, file.path));
   }
+  refuse_pointer(weights);
   verify_hash(weights, file.weights_sha256);
 }
 

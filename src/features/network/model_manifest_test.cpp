@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -188,6 +189,11 @@ TEST(ModelManifest, VerifiesHashesOfModelAndWeights) {
   write("m.bin", "weight");
   EXPECT_THAT(message(), HasSubstr("m.bin: has SHA-256"));
   EXPECT_THAT(message(), HasSubstr("(6 bytes), expected " + file.weights_sha256));
+  write("m.bin", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 7\n");
+  EXPECT_THAT(message(), HasSubstr("m.bin: no model; it is only a pointer of Git LFS"));
+  std::filesystem::remove(folder.file("m.xml"));
+  ASSERT_EQ(::mkfifo(folder.file("m.xml").c_str(), 0600), 0);  // which nobody writes to
+  EXPECT_THAT(message(), HasSubstr("m.xml: not a regular file"));
 }
 
 TEST(ModelManifest, AllShippedManifestsAreValid) {

@@ -165,7 +165,7 @@ void make_folder(const std::string& folder) {
   fs::create_directories(folder, error);
   std::error_code no_link;
   const fs::path leads_to = fs::read_symlink(folder, no_link);
-  if (error && !no_link && !fs::exists(folder, no_link)) {
+  if (error && !no_link && !fs::exists(folder, no_link) && !no_link) {
     throw InputError(fmt::format("output folder {} is a link to {}, which is not there", folder,
                                  leads_to.string()));
   }

@@ -204,15 +204,13 @@ void ResultFolder::move_aside() {
   move_or_throw(file(kOnTheWay), file(kPrevious));  // an empty folder there is replaced
 }
 
-bool ResultFolder::finish() {
+void ResultFolder::finish() {
+  if (!begun_ || !whole()) return;
   std::error_code error;
-  if (begun_ && whole()) {
-    for (const std::string& name : results_in(file(kPrevious))) {
-      fs::remove(fs::path(file(kPrevious)) / name, error);
-    }
-    fs::remove(file(kPrevious), error);
+  for (const std::string& name : results_in(file(kPrevious))) {
+    fs::remove(fs::path(file(kPrevious)) / name, error);
   }
-  return !fs::exists(file(kPrevious), error);
+  fs::remove(file(kPrevious), error);
 }
 
 }  // namespace dxslam

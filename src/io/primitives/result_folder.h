@@ -44,9 +44,8 @@ class ResultFolder {
   /// Puts the last results aside; once, further calls do nothing. Throws InputError if that fails,
   /// and goes on where it stopped when it is called again.
   void begin();
-  /// Removes the last results, unless the new ones are not whole. Returns whether there are none
-  /// left. Failures are passed over.
-  bool finish();
+  /// Removes the last results, unless the new ones are not whole. Failures are passed over.
+  void finish();
 
  private:
   void require_usable() const;
