@@ -40,7 +40,7 @@ FramePtr make_frame(int index, std::mt19937& random) {
 MapSnapshot make_snapshot(int keyframes) {
   std::mt19937 random(1);
   MapSnapshot snapshot;
-  snapshot.header.camera = test_camera();
+  snapshot.parts.rig = Rig(test_camera());
   snapshot.header.extractor = "benchmark";
   snapshot.header.traits = {false, 64, 0.9F, 512};
   for (int k = 0; k < keyframes; ++k) {

@@ -31,7 +31,7 @@ void adjust_whole_bundle(benchmark::State& state) {
   const BundleScene scene = bundle_scene(state);
   for (auto _ : state) {
     BundleProblem problem = scene.problem;
-    benchmark::DoNotOptimize(adjust_bundle(scene.camera, problem, BundleOptions()));
+    benchmark::DoNotOptimize(adjust_bundle(problem, BundleOptions()));
   }
   state.counters["observations"] = static_cast<double>(scene.problem.observations.size());
 }
@@ -126,8 +126,8 @@ void optimize_camera_pose(benchmark::State& state) {
   std::vector<PoseObservation> observations(scene.points.size());
   for (std::size_t i = 0; i < observations.size(); ++i) {
     observations[i].point_in_world = scene.points[i];
-    observations[i].pixel = scene.pixels[i];
-    if (i % 3 != 0) observations[i].disparity = camera.bf() / scene.depths[i];
+    observations[i].measured.pixel = scene.pixels[i];
+    if (i % 3 != 0) observations[i].measured.disparity = camera.bf() / scene.depths[i];
   }
   const SE3 start = scene.world_from_camera * SE3::exp(source.tangent(0.05));
   for (auto _ : state) {

@@ -58,7 +58,7 @@ void measure_start(const Map& map, const Camera& camera, const RgbdImage& image,
                    const std::function<std::unique_ptr<FeatureExtractor>()>& make_extractor,
                    const std::string& file, int runs) {
   auto extractor = make_extractor();
-  const MapHeader header{camera, extractor->name(), extractor->model_hash(), extractor->traits()};
+  const MapHeader header{extractor->name(), extractor->model_hash(), extractor->traits()};
   save_map(file, take_snapshot(header, map));
   Times times;
   for (int run = 0; run < runs; ++run) {

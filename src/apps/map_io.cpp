@@ -30,14 +30,13 @@ std::vector<LoopEdge> loop_edges(const std::vector<StoredLoopEdge>& stored) {
   return loops;
 }
 
-MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor) {
-  return {camera, extractor.name(), extractor.model_hash(), extractor.traits()};
+MapHeader map_header(const FeatureExtractor& extractor) {
+  return {extractor.name(), extractor.model_hash(), extractor.traits()};
 }
 
 std::vector<std::string> hand_over(StoredMap stored, System& system, const std::string& path,
-                                   const MapHeader& current, bool grows) {
+                                   const MapHeader& current) {
   require_same_features(stored.header, current, path);
-  if (grows) require_same_camera(stored.header, current, path);
   if (stored.map.keyframe_count() == 0) {
     throw InputError(fmt::format("{}: the map has no keyframe, expected some to go on with", path));
   }

@@ -16,17 +16,17 @@
 namespace dxslam::apps {
 
 /// What a map made now, with this camera and these features, is made with.
-MapHeader map_header(const Camera& camera, const FeatureExtractor& extractor);
+MapHeader map_header(const FeatureExtractor& extractor);
 
 /// The loops of a map as its file holds them, and back.
 std::vector<StoredLoopEdge> stored_loops(const Map& map, const std::vector<LoopEdge>& loops);
 std::vector<LoopEdge> loop_edges(const std::vector<StoredLoopEdge>& stored);
 
 /// Hands a map, read from the file `path`, to the system. Throws InputError if it was made with
-/// other features, or, where the map is to grow, with another camera. Returns the pictures in it,
-/// one for each of its keyframes' ids; empty strings where there is none.
+/// other features. Returns the pictures in it, one for each of its keyframes' ids; empty strings
+/// where there is none.
 std::vector<std::string> hand_over(StoredMap stored, System& system, const std::string& path,
-                                   const MapHeader& current, bool grows);
+                                   const MapHeader& current);
 
 /// Throws InputError if it cannot be saved, and ContractError for an empty map.
 void save_system_map(const std::string& path, const MapHeader& header, const Map& map,

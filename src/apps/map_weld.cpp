@@ -19,7 +19,7 @@ std::size_t weld_components(StoredMap& stored) {
   LoopSearch search(LoopOptions(), SystemOptions().loop_relaxation,
                     find_vocabulary("auto", header.extractor), header.traits);
   if (!search.usable()) return 0;
-  LoopCloser closer(header.camera, header.traits, LoopCloserOptions(), true);
+  LoopCloser closer(header.traits, LoopCloserOptions(), true);
   const std::vector<LoopEdge> known = loop_edges(stored.loops);
   closer.set_closed_loops(known);
   std::unordered_map<KeyframeId, std::uint32_t> origin;  // the component before any was joined

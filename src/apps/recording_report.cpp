@@ -35,7 +35,7 @@ void print_recording(const RgbdSequence& recording) {
   const RecordingFacts& facts = recording.facts();
   warn("camera of {}: {}x{}, fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f}{}",
        facts.calibration_source, c.width, c.height, c.fx, c.fy, c.cx, c.cy,
-       c.has_distortion() ? ", distorted" : "");
+       c.has_distortion() ? fmt::format(", lens {}", c.lens.model->name) : "");
   if (!facts.has_depth) return;
   if (facts.depth_share == 0.0) {
     warn("depth: {:g} units per metre, no reading in the first images", c.depth_factor);
@@ -61,9 +61,13 @@ void print_skipped(const std::vector<SkippedFrame>& skipped) {
 }
 
 Json camera_json(const Camera& c) {
-  return {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy},
-          {"cx", c.cx},       {"cy", c.cy},         {"k1", c.k1}, {"k2", c.k2},
-          {"p1", c.p1},       {"p2", c.p2},         {"k3", c.k3}};
+  Json json = {
+      {"width", c.width}, {"height", c.height},        {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx},
+      {"cy", c.cy},       {"lens", c.lens.model->name}};
+  for (std::size_t i = 0; i < c.lens.model->parameter_count(); ++i) {
+    json[c.lens.model->parameters[i]] = c.lens.parameters[i];
+  }
+  return json;
 }
 
 Json recording_json(const RgbdSequence& recording) {

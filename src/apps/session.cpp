@@ -111,11 +111,10 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
       });
   if (!made.wait()) return nullptr;
   std::unique_ptr<System> system = made.get();
-  header_ = map_header(camera, system->extractor());
+  header_ = map_header(system->extractor());
   std::vector<std::string> pictures;
   if (stored) {
-    pictures =
-        hand_over(std::move(*stored), *system, settings_.map_in, header_, options_.mode == "slam");
+    pictures = hand_over(std::move(*stored), *system, settings_.map_in, header_);
   }
   tell_notes(feature_notes(options_, system->extractor(), stored.has_value()));
   thumbnails_.emplace(settings_.thumbnails, std::move(pictures));

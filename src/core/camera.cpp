@@ -8,43 +8,33 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/error.h"
 
 namespace dxslam {
 namespace {
 
-// Distorted normalised image coordinates of ideal ones, and how they change with these.
-Eigen::Vector2d distort_normalised(const Camera& c, const Eigen::Vector2d& p,
-                                   Eigen::Matrix2d* jacobian = nullptr) {
-  const double x = p.x();
-  const double y = p.y();
-  const double r2 = p.squaredNorm();
-  const double radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
-  if (jacobian != nullptr) {
-    const double slope =
-        2.0 * (c.k1 + r2 * (2.0 * c.k2 + r2 * 3.0 * c.k3));  // of radial, by r2 / 2
-    const double mixed = x * y * slope + 2.0 * (c.p1 * x + c.p2 * y);
-    *jacobian << radial + x * x * slope + 2.0 * c.p1 * y + 6.0 * c.p2 * x, mixed, mixed,
-        radial + y * y * slope + 6.0 * c.p1 * y + 2.0 * c.p2 * x;
-  }
-  return {x * radial + 2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x),
-          y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y};
-}
+// Of the plane at unit focal length.
+const double kWidestTangent = std::tan(Camera::kWidestAngle * std::numbers::pi / 180.0);
 
-// Whether a pixel of the image has one undistorted place, at which the lens does not fold the
+// Whether a position of the image has one undistorted place, at which the lens does not fold the
 // image.
-bool is_undistorted_by(const Camera& camera, const Eigen::Vector2d& raw,
-                       const Eigen::Vector2d& undistorted) {
-  constexpr double kResidual = 1e-3;  // pixels
+bool is_undone_by(const Lens& lens, const Eigen::Vector2d& raw, const Eigen::Vector2d& ideal) {
+  constexpr double kResidual = 2e-6;  // focal lengths
   constexpr double kFold = 1e-3;      // of the area of the distorted image
   Eigen::Matrix2d jacobian;
-  distort_normalised(
-      camera,
-      {(undistorted.x() - camera.cx) / camera.fx, (undistorted.y() - camera.cy) / camera.fy},
-      &jacobian);
-  return (camera.distort(undistorted) - raw).norm() < kResidual && jacobian.determinant() > kFold &&
+  const Eigen::Vector2d again = lens.model->distort(lens.parameters, ideal, &jacobian);
+  return (again - raw).norm() < kResidual && jacobian.determinant() > kFold &&
          jacobian.trace() > 0.0;
+}
+
+std::string describe(const Lens& lens) {
+  std::string text = fmt::format("the distortion ({})", lens.model->name);
+  for (std::size_t i = 0; i < lens.model->parameter_count(); ++i) {
+    text += fmt::format(" {} {}", lens.model->parameters[i], lens.parameters[i]);
+  }
+  return text;
 }
 
 }  // namespace
@@ -72,54 +62,80 @@ void Camera::prepare(const std::string& where) {
   check("fy", fy, 1.0, 1e5);
   check("cx", cx, -width, 2.0 * width);
   check("cy", cy, -height, 2.0 * height);
-  for (const double k : {k1, k2, p1, p2, k3}) check("distortion", k, -100.0, 100.0);
+  require(lens.model != nullptr, "a lens must have a model");
+  for (std::size_t i = 0; i < lens.parameters.size(); ++i) {
+    const char* name = lens.model->parameters[i];
+    check(name != nullptr ? name : "lens parameter without a name", lens.parameters[i],
+          name != nullptr ? -100.0 : 0.0, name != nullptr ? 100.0 : 0.0);
+  }
   check("fps", fps, 1e-3, 1e4);
   check("depth_factor", depth_factor, 1e-3, 1e6);
   check("depth_baseline", depth_baseline, 1e-4, 10.0);
   check("disparity_noise", disparity_noise, 1e-3, 100.0);
   check("max_depth", max_depth, 0.01, 1e4);
   check("readout_time", readout_time, 0.0, 1.0);
-  if (!has_distortion()) return;
+  if (has_distortion()) measure_view(where);
+}
+
+void Camera::measure_view(const std::string& where) {
   constexpr int kParts = 32;  // of each side of the image
+  constexpr int kPixels = (kParts + 1) * (kParts + 1);
+  constexpr double kLeastUsed = 0.25;  // of the image; else the calibration is another camera's
   const double infinity = std::numeric_limits<double>::infinity();
   undistorted_ = {infinity, infinity, -infinity, -infinity};
-  for (int i = 0; i < (kParts + 1) * (kParts + 1); ++i) {
+  int used = 0;
+  for (int i = 0; i < kPixels; ++i) {
     const int column = i % (kParts + 1);
     const int row = i / (kParts + 1);
     const Eigen::Vector2d raw((width - 1.0) * column / kParts, (height - 1.0) * row / kParts);
-    const Eigen::Vector2d pixel = undistort(raw);
-    if (!is_undistorted_by(*this, raw, pixel)) {
+    const std::optional<Eigen::Vector2d> pixel = undistort(raw);
+    if (!pixel && lens.model->is_fisheye) continue;
+    if (!pixel || !is_undone_by(lens, normalised(raw), normalised(*pixel))) {
       throw InputError(fmt::format(
-          "{}: the distortion k1 {} k2 {} p1 {} p2 {} k3 {} cannot be undone at pixel ({:.0f}, "
-          "{:.0f}), expected a lens that maps every pixel of the image to one direction",
-          where, k1, k2, p1, p2, k3, raw.x(), raw.y()));
+          "{}: {} cannot be undone at pixel ({:.0f}, {:.0f}), expected a lens that maps every "
+          "pixel of the image to one direction",
+          where, describe(lens), raw.x(), raw.y()));
     }
-    undistorted_.left = std::min(undistorted_.left, pixel.x());
-    undistorted_.top = std::min(undistorted_.top, pixel.y());
-    undistorted_.right = std::max(undistorted_.right, pixel.x());
-    undistorted_.bottom = std::max(undistorted_.bottom, pixel.y());
+    ++used;
+    undistorted_.left = std::min(undistorted_.left, pixel->x());
+    undistorted_.top = std::min(undistorted_.top, pixel->y());
+    undistorted_.right = std::max(undistorted_.right, pixel->x());
+    undistorted_.bottom = std::max(undistorted_.bottom, pixel->y());
+  }
+  if (used < kLeastUsed * kPixels) {
+    throw InputError(fmt::format(
+        "{}: {} leaves {:.0f} % of the image within {} degrees of the axis, expected "
+        "{:.0f} % at least",
+        where, describe(lens), 100.0 * used / kPixels, kWidestAngle, 100.0 * kLeastUsed));
   }
 }
 
-Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& pixel) const {
+bool Camera::operator==(const Camera& o) const {
+  return width == o.width && height == o.height && fx == o.fx && fy == o.fy && cx == o.cx &&
+         cy == o.cy && lens == o.lens && fps == o.fps && depth_factor == o.depth_factor &&
+         depth_baseline == o.depth_baseline && disparity_noise == o.disparity_noise &&
+         max_depth == o.max_depth && readout_time == o.readout_time;
+}
+
+std::optional<Eigen::Vector2d> Camera::undistort(const Eigen::Vector2d& pixel) const {
   if (!has_distortion()) return pixel;
-  const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
-  Eigen::Vector2d x = target;
-  Eigen::Matrix2d jacobian;
-  for (int i = 0; i < 20; ++i) {  // Newton's method
-    const Eigen::Vector2d residual = target - distort_normalised(*this, x, &jacobian);
-    const Eigen::Vector2d step = jacobian.inverse() * residual;
-    x += step;
-    if (step.squaredNorm() < 1e-20) break;
-  }
-  return {fx * x.x() + cx, fy * x.y() + cy};
+  const auto ideal = lens.model->undistort(lens.parameters, normalised(pixel));
+  if (!ideal || (lens.model->is_fisheye && !(ideal->norm() <= kWidestTangent))) return std::nullopt;
+  return Eigen::Vector2d(fx * ideal->x() + cx, fy * ideal->y() + cy);
 }
 
 Eigen::Vector2d Camera::distort(const Eigen::Vector2d& pixel) const {
   if (!has_distortion()) return pixel;
-  const Eigen::Vector2d d =
-      distort_normalised(*this, {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy});
+  const Eigen::Vector2d d = lens.model->distort(lens.parameters, normalised(pixel), nullptr);
   return {fx * d.x() + cx, fy * d.y() + cy};
+}
+
+double Camera::stretch_of_lens(const Eigen::Vector2d& pixel) const {
+  constexpr double kMost = 30.0;  // more than at the widest angle
+  Eigen::Matrix2d jacobian;
+  lens.model->distort(lens.parameters, normalised(pixel), &jacobian);
+  const double area = jacobian.determinant();
+  return area * kMost * kMost > 1.0 ? 1.0 / std::sqrt(area) : kMost;
 }
 
 }  // namespace dxslam

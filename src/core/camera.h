@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "core/lens.h"
+
 namespace dxslam {
 
 /// Pixels from `left` to `right` and `top` to `bottom`, the ends included; holds none by default.
@@ -23,17 +25,23 @@ struct PixelBox {
   std::size_t cell_of(const Eigen::Vector2f& pixel, int columns, int rows) const;
 };
 
-/// Pinhole camera with radial-tangential distortion (k1 k2 p1 p2 k3, the model of OpenCV and TUM)
-/// and the depth sensor that is registered to it. Pixel centres are at integer coordinates.
+/// A camera with the depth sensor that is registered to it. Pixel centres are at integer
+/// coordinates.
+///
+/// All geometry is that of an ideal pinhole with the same intrinsics: the image is undone by
+/// undistort() once per keypoint, and what the lens did to its accuracy is in stretch(). Directions
+/// more than kWidestAngle from the axis, which a fisheye sees, are not used: there the plane of the
+/// pinhole ends, and depth along z says little.
 /// Plain data; safe to copy and to share between threads once prepare() was called.
 struct Camera {
   static constexpr double kNearest = 0.05;  ///< metres along z; nearer points count as out of view
+  static constexpr double kWidestAngle = 75.0;  ///< degrees
 
-  int width = 0;                                            ///< pixels
-  int height = 0;                                           ///< pixels
-  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;            ///< pixels
-  double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;  ///< dimensionless
-  double fps = 30.0;                                        ///< nominal frame rate, 1/s
+  int width = 0;                                  ///< pixels
+  int height = 0;                                 ///< pixels
+  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;  ///< pixels
+  Lens lens;
+  double fps = 30.0;              ///< nominal frame rate, 1/s
   double depth_factor = 1000.0;   ///< raw depth units per metre (16-bit image / factor = metres)
   double depth_baseline = 0.075;  ///< metres, between the projector or cameras of the depth sensor
   /// Standard deviation of the depth sensor's disparity, fx * baseline / depth, as a share of that
@@ -50,9 +58,10 @@ struct Camera {
   /// camera, or if the lens cannot be undistorted all over the image.
   void prepare(const std::string& where);
 
-  bool has_distortion() const {
-    return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
-  }
+  bool has_distortion() const { return !lens.is_ideal(); }
+  /// All values the same.
+  bool operator==(const Camera& other) const;
+  bool operator!=(const Camera& other) const { return !(*this == other); }
   /// Turns depth into the coordinate of a virtual right image that is as uncertain as a keypoint's
   /// pixel: disparity = bf / depth, pixels.
   double bf() const { return fx * depth_baseline / disparity_noise; }
@@ -71,12 +80,18 @@ struct Camera {
   Eigen::Vector3d unproject(const Eigen::Vector2d& pixel, double depth) const {
     return {(pixel.x() - cx) / fx * depth, (pixel.y() - cy) / fy * depth, depth};
   }
-  /// Raw (distorted) pixel to the pixel of an ideal pinhole with the same intrinsics, and back.
-  /// undistort() is for pixels of the image.
-  Eigen::Vector2d undistort(const Eigen::Vector2d& pixel) const;
+  /// Raw (distorted) pixel of the image to the pixel of an ideal pinhole with the same intrinsics.
+  /// Empty where a fisheye shows no direction that is used, see above.
+  std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& pixel) const;
+  /// And back.
   Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
-  /// The box around all undistorted pixels of the image. A barrel lens sees farther than the raw
-  /// image is wide. Holds nothing where a lens was not prepared.
+  /// How many undistorted pixels one raw pixel is long at an undistorted pixel, as the geometric
+  /// mean over both directions: what a distance or a standard deviation of the image is there.
+  double stretch(const Eigen::Vector2d& pixel) const {
+    return has_distortion() ? stretch_of_lens(pixel) : 1.0;
+  }
+  /// The box around all undistorted pixels of the image that are used. A barrel lens sees farther
+  /// than the raw image is wide. Holds nothing where a lens was not prepared.
   PixelBox view() const {
     return has_distortion() ? undistorted_ : PixelBox{0.0, 0.0, width - 1.0, height - 1.0};
   }
@@ -92,6 +107,13 @@ struct Camera {
   }
 
  private:
+  double stretch_of_lens(const Eigen::Vector2d& pixel) const;
+  void measure_view(const std::string& where);
+  /// Position on the plane at unit focal length of a pixel.
+  Eigen::Vector2d normalised(const Eigen::Vector2d& pixel) const {
+    return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy};
+  }
+
   PixelBox undistorted_;
 };
 

@@ -24,19 +24,14 @@ Camera freiburg1() {
   c.fy = 516.469215;
   c.cx = 318.643040;
   c.cy = 255.313989;
-  c.k1 = 0.262383;
-  c.k2 = -0.953104;
-  c.p1 = -0.005358;
-  c.p2 = 0.002628;
-  c.k3 = 1.163314;
+  c.lens.parameters = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
   return c;
 }
 
 Camera barrel_lens() {
   Camera c = freiburg1();
   c.fx = c.fy = 400.0;
-  c.k1 = -0.1;
-  c.k2 = c.p1 = c.p2 = c.k3 = 0.0;
+  c.lens.parameters = {-0.1};
   return c;
 }
 
@@ -68,7 +63,7 @@ TEST(Camera, DistortInvertsUndistortOverTheImage) {
   for (int y = 0; y < c.height; y += 40) {
     for (int x = 0; x < c.width; x += 40) {
       const Eigen::Vector2d raw(x, y);
-      EXPECT_LT((c.distort(c.undistort(raw)) - raw).norm(), 1e-6) << raw.transpose();
+      EXPECT_LT((c.distort(*c.undistort(raw)) - raw).norm(), 1e-6) << raw.transpose();
     }
   }
 }
@@ -78,9 +73,10 @@ TEST(Camera, DistortsByTheRadialTangentialModel) {
   const double x = 0.3;
   const double y = -0.2;
   const double r2 = x * x + y * y;
-  const double radial = 1.0 + c.k1 * r2 + c.k2 * r2 * r2 + c.k3 * r2 * r2 * r2;
-  const double xd = x * radial + 2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x);
-  const double yd = y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y;
+  const auto [k1, k2, p1, p2, k3, none1, none2, none3] = c.lens.parameters;
+  const double radial = 1.0 + k1 * r2 + k2 * r2 * r2 + k3 * r2 * r2 * r2;
+  const double xd = x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
+  const double yd = y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
   const Eigen::Vector2d raw = c.distort({c.fx * x + c.cx, c.fy * y + c.cy});
   EXPECT_NEAR(raw.x(), c.fx * xd + c.cx, 1e-10);
   EXPECT_NEAR(raw.y(), c.fy * yd + c.cy, 1e-10);
@@ -88,7 +84,7 @@ TEST(Camera, DistortsByTheRadialTangentialModel) {
 
 TEST(Camera, LeavesPixelsAloneWithoutDistortion) {
   Camera c = freiburg1();
-  c.k1 = c.k2 = c.p1 = c.p2 = c.k3 = 0.0;
+  c.lens = Lens();
   const Eigen::Vector2d pixel(12.5, 400.25);
   EXPECT_FALSE(c.has_distortion());
   EXPECT_EQ(c.undistort(pixel), pixel);
@@ -97,7 +93,7 @@ TEST(Camera, LeavesPixelsAloneWithoutDistortion) {
 
 TEST(Camera, ContainsPixelCentresOnly) {
   Camera c = freiburg1();
-  c.k1 = c.k2 = c.p1 = c.p2 = c.k3 = 0.0;
+  c.lens = Lens();
   EXPECT_TRUE(c.contains({0.0, 0.0}));
   EXPECT_TRUE(c.contains({639.0, 479.0}));
   EXPECT_FALSE(c.contains({639.5, 10.0}));
@@ -113,7 +109,7 @@ TEST(Camera, ContainsTheUndistortedImageOfALens) {
     for (const Eigen::Vector2d& raw :
          {Eigen::Vector2d(6.39 * i, 0.0), Eigen::Vector2d(6.39 * i, 479.0),
           Eigen::Vector2d(0.0, 4.79 * i), Eigen::Vector2d(639.0, 4.79 * i)}) {
-      const Eigen::Vector2d pixel = c.undistort(raw);
+      const Eigen::Vector2d pixel = c.undistort(raw).value();
       EXPECT_LT((c.distort(pixel) - raw).norm(), 1e-6) << raw.transpose();
       const Eigen::Vector2d inwards = Eigen::Vector2d(c.cx, c.cy) - pixel;
       EXPECT_TRUE(c.contains(pixel + 1e-3 * inwards)) << raw.transpose();
@@ -121,18 +117,18 @@ TEST(Camera, ContainsTheUndistortedImageOfALens) {
   }
   EXPECT_LT(c.view().left, -30.0);
   EXPECT_FALSE(c.contains({c.view().left - 1.0, 200.0}));
-  EXPECT_TRUE(c.project_into_view(c.unproject(c.undistort({1.0, 240.0}), 2.0)).has_value());
+  EXPECT_TRUE(c.project_into_view(c.unproject(*c.undistort({1.0, 240.0}), 2.0)).has_value());
 }
 
 TEST(Camera, RefusesALensThatFoldsTheImage) {
   Camera c = barrel_lens();
-  c.k1 = -0.6;
-  EXPECT_THAT(refusal(c), AllOf(HasSubstr("calib.yaml: the distortion k1 -0.6"),
+  c.lens.parameters[0] = -0.6;
+  EXPECT_THAT(refusal(c), AllOf(HasSubstr("calib.yaml: the distortion (radtan) k1 -0.6"),
                                 HasSubstr("cannot be undone at pixel (0, 0)")));
-  c.k1 = 30.0;  // so strong that a pixel is a tenth of its area: still one direction a pixel
+  c.lens.parameters[0] =
+      30.0;  // so strong that a pixel is a tenth of its area: still one direction a pixel
   EXPECT_EQ(refusal(c), "");
-  c.k1 = -0.1;
-  c.p1 = 5.0;
+  c.lens.parameters = {-0.1, 0.0, 5.0};
   EXPECT_THAT(refusal(c), HasSubstr("cannot be undone"));
 }
 
@@ -159,8 +155,8 @@ TEST(Camera, NamesPlaceFieldAndBoundsOfABadValue) {
   c.width = 0;
   EXPECT_THAT(refusal(c), HasSubstr("width"));
   c = freiburg1();
-  c.k3 = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(refusal(c), HasSubstr("distortion"));
+  c.lens.parameters[4] = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(refusal(c), HasSubstr("k3"));
   c = freiburg1();
   c.depth_factor = 0.0;
   EXPECT_THAT(refusal(c), HasSubstr("depth_factor"));

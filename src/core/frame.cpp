@@ -54,6 +54,16 @@ void check_inputs(const RgbdImage& image, const Features& features, const Camera
           "descriptors must be CV_32FC1 or CV_8UC1");
 }
 
+// The rows that are left where some keypoints were left out.
+cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& rows) {
+  if (static_cast<int>(rows.size()) == descriptors.rows) return descriptors;
+  cv::Mat kept(static_cast<int>(rows.size()), descriptors.cols, descriptors.type());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    descriptors.row(rows[i]).copyTo(kept.row(static_cast<int>(i)));
+  }
+  return kept;
+}
+
 }  // namespace
 
 FramePtr make_frame(const RgbdImage& image, const Features& features, const Camera& camera) {
@@ -61,7 +71,6 @@ FramePtr make_frame(const RgbdImage& image, const Features& features, const Came
   auto frame = std::make_shared<Frame>();
   frame->index = image.index;
   frame->stamp = image.stamp;
-  frame->descriptors = features.descriptors;
   frame->global = features.global;
   frame->encoder = features.encoder;
   const std::size_t n = features.size();
@@ -69,31 +78,43 @@ FramePtr make_frame(const RgbdImage& image, const Features& features, const Came
   frame->depths.reserve(n);
   frame->scores.reserve(n);
   frame->sigmas.reserve(n);
-  for (const Keypoint& k : features.keypoints) {
-    frame->pixels.push_back(camera.undistort({k.x, k.y}).cast<float>());
+  std::vector<int> rows;
+  rows.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Keypoint& k = features.keypoints[i];
+    const std::optional<Eigen::Vector2d> pixel = camera.undistort({k.x, k.y});
+    if (!pixel) continue;
+    rows.push_back(static_cast<int>(i));
+    frame->pixels.push_back(pixel->cast<float>());
     frame->depths.push_back(
         image.depth.empty() ? 0.0F : depth_at(image.depth, k.x, k.y, camera.max_depth));
     frame->scores.push_back(k.score);
-    frame->sigmas.push_back(k.sigma);
+    frame->sigmas.push_back(k.sigma * static_cast<float>(camera.stretch(*pixel)));
   }
+  frame->descriptors = rows_of(features.descriptors, rows);
   return frame;
 }
 
-double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera) {
-  return frame.has_depth(keypoint) ? camera.bf() / static_cast<double>(frame.depths[keypoint])
-                                   : 0.0;
-}
-
-bool disparity_agrees(const Camera& camera, double disparity, double z, double sigma) {
+bool Measurement::disparity_agrees(const Camera& camera, double z) const {
   if (z <= Camera::kNearest) return false;
   return std::abs(disparity - camera.bf() / z) <= kMaxDisparityError * sigma;
 }
 
-double agreeing_disparity(const Frame& frame, std::size_t keypoint, const Camera& camera,
-                          double z) {
-  const double disparity = disparity_of(frame, keypoint, camera);
-  const double sigma = static_cast<double>(frame.sigmas[keypoint]);
-  return disparity_agrees(camera, disparity, z, sigma) ? disparity : 0.0;
+Measurement measurement_of(const Frame& frame, std::size_t keypoint, const Camera& camera) {
+  Measurement m;
+  m.pixel = frame.pixels[keypoint].cast<double>();
+  m.sigma = static_cast<double>(frame.sigmas[keypoint]);
+  if (frame.has_depth(keypoint)) {
+    m.disparity = camera.bf() / static_cast<double>(frame.depths[keypoint]);
+  }
+  return m;
+}
+
+Measurement measurement_of(const Frame& frame, std::size_t keypoint, const Camera& camera,
+                           double z) {
+  Measurement m = measurement_of(frame, keypoint, camera);
+  if (!m.disparity_agrees(camera, z)) m.drop_disparity();
+  return m;
 }
 
 }  // namespace dxslam

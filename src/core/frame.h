@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -10,6 +11,7 @@
 
 #include "core/camera.h"
 #include "core/features.h"
+#include "core/rig.h"
 
 namespace dxslam {
 
@@ -24,12 +26,13 @@ struct RgbdImage {
 /// What tracking sees of one image: keypoints with depth. Immutable once made; shared between
 /// threads as std::shared_ptr<const Frame>.
 struct Frame {
+  CameraId camera = 0;  ///< in the rig of the map that the frame belongs to
   std::int64_t index = 0;
   double stamp = 0.0;                   ///< seconds
   std::vector<Eigen::Vector2f> pixels;  ///< N undistorted positions
   std::vector<float> depths;            ///< N metres; 0 where there is no reading
   std::vector<float> scores;            ///< N detector confidences
-  std::vector<float> sigmas;            ///< N pixels
+  std::vector<float> sigmas;            ///< N undistorted pixels, standard deviations
   cv::Mat descriptors;                  ///< N x D, as in Features
   std::vector<float> global;            ///< as in Features
   cv::Mat encoder;                      ///< as in Features; dropped once it has served
@@ -40,20 +43,35 @@ struct Frame {
 
 using FramePtr = std::shared_ptr<const Frame>;
 
-/// Disparity (see Camera::bf) of a keypoint for the optimisers; 0 where it has no depth.
-double disparity_of(const Frame& frame, std::size_t keypoint, const Camera& camera);
+/// What an image says of a point of the scene: the one form in which the optimisers take it. A
+/// depth is a disparity here, which has the same deviation as the pixel (Camera::bf). Plain data.
+struct Measurement {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< undistorted
+  double sigma = 1.0;                               ///< of pixel and disparity, pixels
+  double disparity = 0.0;                           ///< pixels; see has_disparity()
 
-/// Whether a disparity is that of a point `z` metres ahead, by the `sigma` of its keypoint. A depth
-/// reading beside an edge is often that of another surface, while the pixel is right: then the
-/// optimisers are to go by the pixel alone.
-bool disparity_agrees(const Camera& camera, double disparity, double z, double sigma);
+  bool has_disparity() const { return disparity > 0.0; }
+  void drop_disparity() { disparity = 0.0; }
+  /// Whether all numbers can be used.
+  bool is_finite() const {
+    return pixel.allFinite() && std::isfinite(disparity) && sigma > 0.0 && std::isfinite(sigma);
+  }
+  /// Whether the disparity is that of a point `z` metres ahead. A depth reading beside an edge is
+  /// often that of another surface, while the pixel is right: then the pixel alone is to be used.
+  bool disparity_agrees(const Camera& camera, double z) const;
+};
 
-/// disparity_of() a keypoint that is taken for a point `z` metres ahead; 0 where it disagrees.
-double agreeing_disparity(const Frame& frame, std::size_t keypoint, const Camera& camera, double z);
+/// Of a keypoint of the frame, which `camera` took; with its disparity where it has a depth.
+Measurement measurement_of(const Frame& frame, std::size_t keypoint, const Camera& camera);
+/// The same of a keypoint that is taken for a point `z` metres ahead: without a disparity that
+/// disagrees.
+Measurement measurement_of(const Frame& frame, std::size_t keypoint, const Camera& camera,
+                           double z);
 
 /// Undistorts the keypoints and reads their depth: bilinear over the four neighbours where these
 /// agree, else the nearest pixel's reading, so that no depth is invented across an edge. Readings
-/// nearer than Camera::kNearest count as missing. Throws ContractError if colour, depth or
+/// nearer than Camera::kNearest count as missing. Keypoints in directions that are not used
+/// (Camera::undistort) are left out. Throws ContractError if colour, depth or
 /// descriptors do not fit the camera or each other; `color` may be empty.
 FramePtr make_frame(const RgbdImage& image, const Features& features, const Camera& camera);
 

@@ -70,13 +70,13 @@ TEST_F(FrameTest, TakesReadingsTooNearAsMissing) {
 }
 
 TEST_F(FrameTest, UndistortsPixelsButReadsDepthAtTheRawOnes) {
-  camera_.k1 = 0.5;
+  camera_.lens.parameters[0] = 0.5;
   image_.depth.at<float>(2, 3) = 1.0F;
   Features features;
   features.keypoints.push_back({3.0F, 2.0F, 1.0F, 1.0F});
   features.descriptors = cv::Mat::zeros(1, 4, CV_32FC1);
   const FramePtr frame = make_frame(image_, features, camera_);
-  const Eigen::Vector2d expected = camera_.undistort({3.0, 2.0});
+  const Eigen::Vector2d expected = camera_.undistort({3.0, 2.0}).value();
   EXPECT_LT((frame->pixels[0].cast<double>() - expected).norm(), 1e-4);
   EXPECT_EQ(frame->depths[0], 1.0F);
 }
@@ -135,17 +135,21 @@ TEST_F(FrameTest, AcceptsAnImageWithoutKeypoints) {
   EXPECT_EQ(make_frame(image_, Features(), camera_)->size(), 0U);
 }
 
-TEST(AgreeingDisparity, IsThatOfThePointOrNone) {
+TEST(MeasurementOfAPoint, HasItsDisparityOrNone) {
   Camera camera;
   camera.fx = 500.0;
   Frame frame;
   frame.depths = {2.0F, 3.0F, 0.0F};
   frame.sigmas = {1.0F, 1.0F, 1.0F};
-  EXPECT_NEAR(agreeing_disparity(frame, 0, camera, 2.0), camera.bf() / 2.0, 1e-9);
-  EXPECT_GT(agreeing_disparity(frame, 0, camera, 2.02), 0.0);
-  EXPECT_EQ(agreeing_disparity(frame, 1, camera, 2.0), 0.0) << "of a surface behind the point";
-  EXPECT_EQ(agreeing_disparity(frame, 2, camera, 2.0), 0.0) << "without a reading";
-  EXPECT_EQ(agreeing_disparity(frame, 0, camera, -2.0), 0.0) << "behind the camera";
+  frame.pixels.resize(3, {4.0F, 5.0F});
+  EXPECT_NEAR(measurement_of(frame, 0, camera, 2.0).disparity, camera.bf() / 2.0, 1e-9);
+  EXPECT_EQ(measurement_of(frame, 0, camera).pixel, Eigen::Vector2d(4.0, 5.0));
+  EXPECT_FALSE(measurement_of(frame, 2, camera).has_disparity());
+  EXPECT_GT(measurement_of(frame, 0, camera, 2.02).disparity, 0.0);
+  EXPECT_EQ(measurement_of(frame, 1, camera, 2.0).disparity, 0.0)
+      << "of a surface behind the point";
+  EXPECT_EQ(measurement_of(frame, 2, camera, 2.0).disparity, 0.0) << "without a reading";
+  EXPECT_EQ(measurement_of(frame, 0, camera, -2.0).disparity, 0.0) << "behind the camera";
 }
 
 }  // namespace

@@ -27,8 +27,9 @@ DepthView::DepthView(const cv::Mat& depth, const Camera& camera, const SE3& worl
       const float z = depth.at<float>(y * kStep, x * kStep);
       depth_.at<float>(y, x) = z;
       if (z <= 0.0F || y % kPointStep != 0 || x % kPointStep != 0) continue;
-      const Eigen::Vector2d pixel = camera.undistort({x * kStep, y * kStep});
-      points_.push_back((world_from_camera * camera.unproject(pixel, z)).cast<float>());
+      const std::optional<Eigen::Vector2d> pixel = camera.undistort({x * kStep, y * kStep});
+      if (!pixel) continue;
+      points_.push_back((world_from_camera * camera.unproject(*pixel, z)).cast<float>());
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "core/camera.h"
+#include "core/frame.h"
 #include "core/se3.h"
 
 namespace dxslam {
@@ -18,6 +19,15 @@ inline Eigen::Vector3d project_stereo(const Camera& camera, const Eigen::Vector3
   const double inverse_z = 1.0 / p.z();
   const double u = camera.fx * p.x() * inverse_z + camera.cx;
   return {u, camera.fy * p.y() * inverse_z + camera.cy, u - camera.bf() * inverse_z};
+}
+
+/// project_stereo minus what was measured, pixels; the last is 0 without a disparity.
+inline Eigen::Vector3d stereo_residual(const Camera& camera, const Measurement& m,
+                                       const Eigen::Vector3d& p) {
+  const Eigen::Vector3d measured(m.pixel.x(), m.pixel.y(), m.pixel.x() - m.disparity);
+  Eigen::Vector3d r = project_stereo(camera, p) - measured;
+  if (!m.has_disparity()) r.z() = 0.0;
+  return r;
 }
 
 /// Derivative of project_stereo by the point in the camera frame.

@@ -12,11 +12,10 @@ namespace dxslam {
 namespace {
 
 struct TwoViews {
-  const Camera& camera;
+  const PixelView& a;
+  const PixelView& b;
   SE3 b_from_a;
   Eigen::Matrix3d rotation;  // of b_from_a
-  Eigen::Vector2d pixel_in_a;
-  Eigen::Vector2d pixel_in_b;
 };
 
 bool in_front(const TwoViews& views, const Eigen::Vector3d& p) {
@@ -25,8 +24,8 @@ bool in_front(const TwoViews& views, const Eigen::Vector3d& p) {
 }
 
 double squared_error(const TwoViews& views, const Eigen::Vector3d& p) {
-  return (views.camera.project(p) - views.pixel_in_a).squaredNorm() +
-         (views.camera.project(views.b_from_a * p) - views.pixel_in_b).squaredNorm();
+  return views.a.camera.squared_error(p, views.a.pixel) +
+         views.b.camera.squared_error(views.b_from_a * p, views.b.pixel);
 }
 
 // Linear triangulation in frame a: x * (row 3) - (row 1) = 0 and the same for y, in both views.
@@ -45,26 +44,23 @@ Eigen::Vector3d linear_point(const TwoViews& views, const Eigen::Vector3d& ray_a
 Eigen::Vector3d gauss_newton_step(const TwoViews& views, const Eigen::Vector3d& p) {
   const Eigen::Vector3d q = views.b_from_a * p;
   Eigen::Matrix<double, 4, 3> jacobian;
-  jacobian.topRows<2>() = project_stereo_jacobian(views.camera, p).topRows<2>();
-  jacobian.bottomRows<2>() = project_stereo_jacobian(views.camera, q).topRows<2>() * views.rotation;
+  jacobian.topRows<2>() = project_stereo_jacobian(views.a.camera, p).topRows<2>();
+  jacobian.bottomRows<2>() =
+      project_stereo_jacobian(views.b.camera, q).topRows<2>() * views.rotation;
   Eigen::Vector4d residual;
-  residual << views.camera.project(p) - views.pixel_in_a,
-      views.camera.project(q) - views.pixel_in_b;
+  residual << views.a.camera.project(p) - views.a.pixel, views.b.camera.project(q) - views.b.pixel;
   const Eigen::Matrix3d hessian = jacobian.transpose() * jacobian;
   return p - hessian.ldlt().solve(jacobian.transpose() * residual);
 }
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> triangulate(const Camera& camera, const SE3& world_from_a,
-                                           const Eigen::Vector2d& pixel_in_a,
-                                           const SE3& world_from_b,
-                                           const Eigen::Vector2d& pixel_in_b, double min_parallax) {
-  const SE3 b_from_a = world_from_b.inverse() * world_from_a;
-  const TwoViews views{camera, b_from_a, b_from_a.rotation().toRotationMatrix(), pixel_in_a,
-                       pixel_in_b};
-  const Eigen::Vector3d ray_a = camera.unproject(pixel_in_a, 1.0);
-  const Eigen::Vector3d ray_b = camera.unproject(pixel_in_b, 1.0);
+std::optional<Eigen::Vector3d> triangulate(const PixelView& a, const PixelView& b,
+                                           double min_parallax) {
+  const SE3 b_from_a = b.world_from_camera.inverse() * a.world_from_camera;
+  const TwoViews views{a, b, b_from_a, b_from_a.rotation().toRotationMatrix()};
+  const Eigen::Vector3d ray_a = a.camera.unproject(a.pixel, 1.0);
+  const Eigen::Vector3d ray_b = b.camera.unproject(b.pixel, 1.0);
   const Eigen::Vector3d turned = views.rotation * ray_a;
   // atan2 of sine and cosine: exact for the tiny angles that matter here.
   const double parallax = std::atan2(turned.cross(ray_b).norm(), turned.dot(ray_b));
@@ -76,7 +72,7 @@ std::optional<Eigen::Vector3d> triangulate(const Camera& camera, const SE3& worl
   if (in_front(views, refined) && squared_error(views, refined) < squared_error(views, point)) {
     point = refined;
   }
-  return world_from_a * point;
+  return a.world_from_camera * point;
 }
 
 }  // namespace dxslam

@@ -10,12 +10,16 @@
 
 namespace dxslam {
 
-/// Point seen at two undistorted pixels from two poses, by linear triangulation (DLT) refined by
-/// one Gauss-Newton step. Nothing if it lies behind a camera or the rays are parallel within
-/// `min_parallax` radians.
-std::optional<Eigen::Vector3d> triangulate(const Camera& camera, const SE3& world_from_a,
-                                           const Eigen::Vector2d& pixel_in_a,
-                                           const SE3& world_from_b,
-                                           const Eigen::Vector2d& pixel_in_b, double min_parallax);
+/// A point as a camera sees it. Refers to what it is made of.
+struct PixelView {
+  const Camera& camera;
+  const SE3& world_from_camera;
+  const Eigen::Vector2d& pixel;  ///< undistorted
+};
+
+/// Point seen in two views, by linear triangulation (DLT) refined by one Gauss-Newton step. Nothing
+/// if it lies behind a camera or the rays are parallel within `min_parallax` radians.
+std::optional<Eigen::Vector3d> triangulate(const PixelView& a, const PixelView& b,
+                                           double min_parallax);
 
 }  // namespace dxslam

@@ -124,7 +124,7 @@ class BundleMerger {
       if (it == seen.end()) continue;
       // Another keypoint may stand for the point there by now.
       const Frame& frame = *map_.keyframe(keyframe).frame;
-      if (frame.pixels[it->keypoint].cast<double>() != o.pixel) continue;
+      if (frame.pixels[it->keypoint].cast<double>() != o.measured.pixel) continue;
       map_.remove_observation(point, keyframe);
       ++merge_.outlier_observations;
     }
@@ -144,9 +144,8 @@ BundleMerge merge_bundle(const LocalBundle& bundle, const BundleReport& report, 
   return BundleMerger(bundle, report, map).run();
 }
 
-BackgroundBundle::BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line,
-                                   Pause pause)
-    : camera_(camera), options_(options), in_line_(in_line), pause_(std::move(pause)) {}
+BackgroundBundle::BackgroundBundle(const BundleOptions& options, bool in_line, Pause pause)
+    : options_(options), in_line_(in_line), pause_(std::move(pause)) {}
 
 BackgroundBundle::~BackgroundBundle() {
   cancel();
@@ -156,7 +155,7 @@ BackgroundBundle::~BackgroundBundle() {
 void BackgroundBundle::start(const Map& map, std::uint32_t component) {
   cancel();
   auto job = std::make_unique<Job>();
-  job->bundle = gather_component_bundle(map, component, camera_);
+  job->bundle = gather_component_bundle(map, component);
   const auto work = [this, target = job.get()] { adjust(*target); };
   if (!in_line_) job->thread = thread_if_possible(work);
   if (!job->thread.joinable()) work();
@@ -169,7 +168,7 @@ void BackgroundBundle::adjust(Job& job) const {
     return !job.stop.load(std::memory_order_relaxed);
   };
   try {
-    job.report = adjust_bundle(camera_, job.bundle.problem, options_, may_go_on);
+    job.report = adjust_bundle(job.bundle.problem, options_, may_go_on);
   } catch (...) {
     job.error = std::current_exception();
   }

@@ -43,8 +43,7 @@ class BackgroundBundle {
  public:
   /// `in_line`: start() does the work itself, for runs that must be repeatable. Each thread calls a
   /// copy of `pause`.
-  BackgroundBundle(const Camera& camera, const BundleOptions& options, bool in_line,
-                   Pause pause = {});
+  BackgroundBundle(const BundleOptions& options, bool in_line, Pause pause = {});
   ~BackgroundBundle();  ///< waits for the thread to notice, an iteration at most
   BackgroundBundle(const BackgroundBundle&) = delete;
   BackgroundBundle& operator=(const BackgroundBundle&) = delete;
@@ -73,7 +72,6 @@ class BackgroundBundle {
   void adjust(Job& job) const;
   void bury_dead();
 
-  Camera camera_;
   BundleOptions options_;
   bool in_line_;
   Pause pause_;

@@ -37,7 +37,7 @@ class BackgroundBundleTest : public testing::Test {
 TEST_F(BackgroundBundleTest, AdjustsTheWholeMap) {
   walk_.walk(0.0, 8.0, 0.25);
   const double before = walk_.ate();
-  BackgroundBundle bundle(scene_.camera(), {10, 10}, true);
+  BackgroundBundle bundle({10, 10}, true);
   bundle.start(walk_.map, 0);
   EXPECT_TRUE(bundle.pending());
   const std::optional<BundleMerge> merge = bundle.poll(walk_.map);
@@ -54,7 +54,7 @@ TEST_F(BackgroundBundleTest, NeedsNoThread) {
   walk_.walk(0.0, 8.0, 0.25);
   const double before = walk_.ate();
   const NoMoreThreads none;
-  BackgroundBundle bundle(scene_.camera(), {10, 10}, false);
+  BackgroundBundle bundle({10, 10}, false);
   bundle.start(walk_.map, 0);
   ASSERT_TRUE(bundle.wait(walk_.map));
   EXPECT_LT(walk_.ate(), 0.5 * before);
@@ -62,7 +62,7 @@ TEST_F(BackgroundBundleTest, NeedsNoThread) {
 
 TEST_F(BackgroundBundleTest, CarriesWhatWasMadeMeanwhile) {
   const KeyframeId last = walk_.walk(0.0, 8.0, 0.25);
-  BackgroundBundle bundle(scene_.camera(), {10, 10}, true);
+  BackgroundBundle bundle({10, 10}, true);
   bundle.start(walk_.map, 0);
   const KeyframeId first_new = walk_.add(8.25);
   const KeyframeId second_new = walk_.add(8.5);
@@ -93,7 +93,7 @@ TEST_F(BackgroundBundleTest, CarriesWhatWasMadeMeanwhile) {
 
 TEST_F(BackgroundBundleTest, PassesOverWhatWasRemovedMeanwhile) {
   walk_.walk(0.0, 8.0, 0.25);
-  BackgroundBundle bundle(scene_.camera(), {10, 10}, true);
+  BackgroundBundle bundle({10, 10}, true);
   bundle.start(walk_.map, 0);
   walk_.map.remove_keyframe(10);
   const std::vector<PointId> points = walk_.map.point_ids();
@@ -118,7 +118,7 @@ TEST_F(BackgroundBundleTest, UnbindsWrongObservationsThatStillStand) {
   map.remove_observation(b, 12);
   ASSERT_TRUE(map.add_observation(a, 12, 1));
   ASSERT_TRUE(map.add_observation(b, 12, 0));
-  BackgroundBundle bundle(scene_.camera(), {10, 10}, true);
+  BackgroundBundle bundle({10, 10}, true);
   bundle.start(map, 0);
   const std::optional<BundleMerge> merge = bundle.poll(map);
   ASSERT_TRUE(merge && merge->merged);
@@ -132,7 +132,7 @@ TEST_F(BackgroundBundleTest, LeavesOtherComponentsAlone) {
   walk_.add(6.0, true);
   const KeyframeId other = walk_.walk(6.25, 8.0, 0.25);
   const SE3 pose = walk_.map.keyframe(other).world_from_camera;
-  BackgroundBundle bundle(scene_.camera(), {5, 5}, true);
+  BackgroundBundle bundle({5, 5}, true);
   bundle.start(walk_.map, 0);
   const std::optional<BundleMerge> merge = bundle.poll(walk_.map);
   ASSERT_TRUE(merge && merge->merged);
@@ -145,11 +145,11 @@ TEST_F(BackgroundBundleTest, TheThreadComesToTheSameResult) {
   RingScene scene(5.0, 60.0);
   RingWalk twin(scene, jitter());
   twin.walk(0.0, 6.0, 0.25);
-  BackgroundBundle inside(scene_.camera(), {5, 5}, true);
+  BackgroundBundle inside({5, 5}, true);
   inside.start(twin.map, 0);
   ASSERT_TRUE(inside.poll(twin.map));
 
-  BackgroundBundle outside(scene_.camera(), {5, 5}, false);
+  BackgroundBundle outside({5, 5}, false);
   outside.start(walk_.map, 0);
   std::optional<BundleMerge> merge;
   while (!(merge = outside.poll(walk_.map))) std::this_thread::yield();
@@ -160,7 +160,7 @@ TEST_F(BackgroundBundleTest, TheThreadComesToTheSameResult) {
 TEST_F(BackgroundBundleTest, ACancelledAdjustmentChangesNothing) {
   walk_.walk(0.0, scene_.circumference(), 0.1);
   const MapState before(walk_.map);
-  BackgroundBundle bundle(scene_.camera(), {1000, 1000}, false);
+  BackgroundBundle bundle({1000, 1000}, false);
   bundle.start(walk_.map, 0);
   EXPECT_FALSE(bundle.poll(walk_.map));  // a thousand steps take longer than this line
   bundle.cancel();
@@ -177,7 +177,7 @@ TEST_F(BackgroundBundleTest, ACancelledAdjustmentChangesNothing) {
 
 TEST_F(BackgroundBundleTest, AUselessResultChangesNothing) {
   walk_.walk(0.0, 2.0);
-  const LocalBundle bundle = gather_component_bundle(walk_.map, 0, scene_.camera());
+  const LocalBundle bundle = gather_component_bundle(walk_.map, 0);
   const MapState before(walk_.map);
   EXPECT_FALSE(merge_bundle(bundle, BundleReport(), walk_.map).merged);
   EXPECT_TRUE(MapState(walk_.map) == before);

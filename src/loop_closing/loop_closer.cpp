@@ -14,12 +14,11 @@ const char* LoopAttempt::verdict() const {
   return verification.accepted ? describe(plan.refusal) : describe(verification.rejection);
 }
 
-LoopCloser::LoopCloser(const Camera& camera, const DescriptorTraits& traits,
-                       const LoopCloserOptions& options, bool repeatable, Pause pause)
-    : camera_(camera),
-      traits_(traits),
+LoopCloser::LoopCloser(const DescriptorTraits& traits, const LoopCloserOptions& options,
+                       bool repeatable, Pause pause)
+    : traits_(traits),
       options_((validate_options("loop_closing", options), options)),
-      bundle_(camera, options.bundle, repeatable, std::move(pause)) {}
+      bundle_(options.bundle, repeatable, std::move(pause)) {}
 
 LoopReport LoopCloser::consider(Map& map, KeyframeId query,
                                 const std::vector<KeyframeId>& candidates) {
@@ -33,8 +32,7 @@ LoopReport LoopCloser::consider(Map& map, KeyframeId query,
   for (const KeyframeId candidate : candidates) {
     if (report.attempts.size() >= static_cast<std::size_t>(options_.max_candidates)) break;
     LoopAttempt attempt;
-    attempt.verification =
-        verify_loop(map, query, candidate, camera_, traits_, options_.verification);
+    attempt.verification = verify_loop(map, query, candidate, traits_, options_.verification);
     if (attempt.verification.accepted) {
       attempt.plan = plan_loop_correction(map, attempt.verification, closed_, options_.correction);
     }
@@ -52,8 +50,8 @@ void LoopCloser::carry_out(const LoopAttempt& attempt, Map& map, LoopReport& rep
   // An adjustment under way knows nothing of the correction and would undo it.
   const bool moves = report.effect != LoopEffect::kWeld;
   if (moves) bundle_.cancel();
-  report.change = apply_loop_plan(attempt.plan, attempt.verification, camera_, traits_,
-                                  options_.correction, map, closed_);
+  report.change = apply_loop_plan(attempt.plan, attempt.verification, traits_, options_.correction,
+                                  map, closed_);
   forget_doubles(map);
   last_closed_ = report.query;
   if (!moves || !options_.full_bundle) return;

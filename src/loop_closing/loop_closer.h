@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.h"
 #include "core/features.h"
 #include "core/options.h"
 #include "loop_closing/background_bundle.h"
@@ -69,8 +68,8 @@ class LoopCloser {
  public:
   /// `repeatable`: the bundle is adjusted within consider(), and merged by the next poll().
   /// `pause` is for the adjustment. Throws InputError for options out of range.
-  LoopCloser(const Camera& camera, const DescriptorTraits& traits, const LoopCloserOptions& options,
-             bool repeatable, Pause pause = {});
+  LoopCloser(const DescriptorTraits& traits, const LoopCloserOptions& options, bool repeatable,
+             Pause pause = {});
 
   /// Tries the candidates, best first, until one is accepted. The map is unchanged if none is.
   /// `query` must be in the map; candidates may have been removed meanwhile, and may be of other
@@ -94,7 +93,6 @@ class LoopCloser {
   void forget_doubles(const Map& map);
   void carry_out(const LoopAttempt& attempt, Map& map, LoopReport& report);
 
-  Camera camera_;
   DescriptorTraits traits_;
   LoopCloserOptions options_;
   std::vector<LoopEdge> closed_;

@@ -12,7 +12,7 @@ namespace {
 
 class LoopCloserTest : public testing::Test {
  protected:
-  LoopCloserTest() : closer_(scene_.camera(), scene_.traits(), options_, true) {}
+  LoopCloserTest() : closer_(scene_.traits(), options_, true) {}
 
   RingScene scene_{10.0, 45.0};  // 63 m round
   LoopCloserOptions options_;
@@ -92,7 +92,7 @@ TEST_F(LoopCloserTest, ACorrectionGivesUpTheAdjustmentBeforeIt) {
   LoopCloserOptions options;
   options.pause_keyframes = 0;
   options.bundle = {1000, 1000};
-  LoopCloser closer(scene_.camera(), scene_.traits(), options, false);
+  LoopCloser closer(scene_.traits(), options, false);
   Drift drift;
   drift.turn_bias = 0.001;
   RingWalk walk(scene_, drift);
@@ -115,7 +115,7 @@ TEST_F(LoopCloserTest, IsRepeatable) {
     Drift drift;
     drift.turn_bias = 0.001;
     RingWalk walk(scene, drift);
-    LoopCloser closer(scene.camera(), scene.traits(), options_, true);
+    LoopCloser closer(scene.traits(), options_, true);
     const KeyframeId query = walk.walk(0.0, scene.circumference() + 1.5);
     EXPECT_EQ(closer.consider(walk.map, query, {3}).effect, LoopEffect::kBend);
     EXPECT_TRUE(closer.poll(walk.map));
@@ -126,7 +126,7 @@ TEST_F(LoopCloserTest, IsRepeatable) {
 
 TEST_F(LoopCloserTest, RefusesOptionsOutOfRange) {
   options_.correction.weld_radius = 0.0;
-  EXPECT_THROW(LoopCloser(scene_.camera(), scene_.traits(), options_, true), InputError);
+  EXPECT_THROW(LoopCloser(scene_.traits(), options_, true), InputError);
 }
 
 // Issue 5: on a loop of at least 200 m with drift, ATE after closure at most 20 % of that before.
@@ -136,7 +136,7 @@ TEST(LongLoop, ClosureTakesFourFifthsOfTheErrorOut) {
   RingWalk walk(scene);
   const KeyframeId query = walk.walk(0.0, scene.circumference() + 3.0);
   const double before = walk.ate();
-  LoopCloser closer(scene.camera(), scene.traits(), LoopCloserOptions(), true);
+  LoopCloser closer(scene.traits(), LoopCloserOptions(), true);
   const LoopReport report = closer.consider(walk.map, query, {200, 6});
   ASSERT_EQ(report.effect, LoopEffect::kBend) << report.attempts.back().verdict();
   const double corrected = walk.ate();

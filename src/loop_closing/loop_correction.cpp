@@ -163,7 +163,7 @@ bool bind(PointId point, KeyframeId keyframe, std::uint32_t keypoint, Map& map) 
   return true;
 }
 
-int weld(const LoopVerification& loop, const Camera& camera, const DescriptorTraits& traits,
+int weld(const LoopVerification& loop, const DescriptorTraits& traits,
          const LoopCorrectionOptions& options, Map& map) {
   const auto group = [&](KeyframeId id) {
     constexpr std::size_t kAll = static_cast<std::size_t>(-1);
@@ -179,10 +179,10 @@ int weld(const LoopVerification& loop, const Camera& camera, const DescriptorTra
   const PointFusion fusion{options.weld_radius, options.weld_ratio, options.weld_depth_tolerance,
                            traits};
   for (const KeyframeId id : here.keyframes) {
-    fused += fuse_points(there.points, id, camera, fusion, map);
+    fused += fuse_points(there.points, id, fusion, map);
   }
   for (const KeyframeId id : there.keyframes) {
-    fused += fuse_points(here.points, id, camera, fusion, map);
+    fused += fuse_points(here.points, id, fusion, map);
   }
   return fused;
 }
@@ -244,14 +244,14 @@ LoopPlan plan_loop_correction(const Map& map, const LoopVerification& loop,
   return plan;
 }
 
-LoopChange apply_loop_plan(const LoopPlan& plan, const LoopVerification& loop, const Camera& camera,
+LoopChange apply_loop_plan(const LoopPlan& plan, const LoopVerification& loop,
                            const DescriptorTraits& traits, const LoopCorrectionOptions& options,
                            Map& map, std::vector<LoopEdge>& closed) {
   LoopChange change;
   if (plan.effect == LoopEffect::kNone) return change;
   if (plan.effect == LoopEffect::kBend) bend(plan, map, change);
   if (plan.effect == LoopEffect::kJoin) join(plan, map, change);
-  change.fused_points = weld(loop, camera, traits, options, map);
+  change.fused_points = weld(loop, traits, options, map);
   closed.push_back({loop.candidate, loop.query});
   return change;
 }

@@ -133,7 +133,7 @@ struct LoopChange {
 /// Carries out a plan made from this state of the map: moves keyframes and, with the keyframe that
 /// made each, points; fuses what is seen from both ends; remembers the loop in `closed`. A plan
 /// without effect changes nothing.
-LoopChange apply_loop_plan(const LoopPlan& plan, const LoopVerification& loop, const Camera& camera,
+LoopChange apply_loop_plan(const LoopPlan& plan, const LoopVerification& loop,
                            const DescriptorTraits& traits, const LoopCorrectionOptions& options,
                            Map& map, std::vector<LoopEdge>& closed);
 

@@ -14,7 +14,7 @@ namespace {
 class LoopCorrectionTest : public testing::Test {
  protected:
   LoopVerification verify(const RingWalk& walk, KeyframeId query, KeyframeId candidate) {
-    return verify_loop(walk.map, query, candidate, scene_.camera(), scene_.traits(), {});
+    return verify_loop(walk.map, query, candidate, scene_.traits(), {});
   }
   /// A loop as a deceived verification would report it.
   static LoopVerification claim(KeyframeId query, KeyframeId candidate,
@@ -30,7 +30,7 @@ class LoopCorrectionTest : public testing::Test {
     return map.keyframe(a).world_from_camera.inverse() * map.keyframe(b).world_from_camera;
   }
   LoopChange apply(const LoopPlan& plan, const LoopVerification& loop, Map& map) {
-    return apply_loop_plan(plan, loop, scene_.camera(), scene_.traits(), options_, map, closed_);
+    return apply_loop_plan(plan, loop, scene_.traits(), options_, map, closed_);
   }
   static Drift strong_drift() {
     Drift drift;
@@ -216,8 +216,7 @@ TEST_F(LoopCorrectionTest, TakesDriftInScaleOut) {
   // Depths are of no use to a camera without them, and would contradict the scale.
   LoopVerificationOptions verification;
   verification.depth_tolerance = 10.0;
-  const LoopVerification loop =
-      verify_loop(walk.map, query, 3, scene_.camera(), scene_.traits(), verification);
+  const LoopVerification loop = verify_loop(walk.map, query, 3, scene_.traits(), verification);
   ASSERT_TRUE(loop.accepted) << describe(loop.rejection);
   const double expected = std::exp(-drift.scale_bias * 2.0 * scene_.circumference());
   EXPECT_NEAR(loop.scale, expected, 0.02);

@@ -29,9 +29,9 @@ int shared_points(const Keyframe& keyframe, KeyframeId other) {
 
 class LoopVerifier {
  public:
-  LoopVerifier(const Map& map, const Camera& camera, const DescriptorTraits& traits,
+  LoopVerifier(const Map& map, const DescriptorTraits& traits,
                const LoopVerificationOptions& options)
-      : map_(map), camera_(camera), traits_(traits), options_(options) {}
+      : map_(map), traits_(traits), options_(options) {}
 
   LoopVerification run(KeyframeId query, KeyframeId candidate) {
     report_.query = query;
@@ -97,7 +97,7 @@ class LoopVerifier {
       depths.push_back(frame.depths[static_cast<std::size_t>(m.b)]);
     }
     const std::optional<PnpReport> pnp =
-        solve_pnp(camera_, positions, pixels, depths, options_.pnp);
+        solve_pnp(query_camera(), positions, pixels, depths, options_.pnp);
     if (!pnp) return LoopRejection::kNoPose;
     report_.pose_inliers = pnp->inliers;
     world_from_query_ = pnp->world_from_camera;
@@ -106,7 +106,7 @@ class LoopVerifier {
 
   LoopRejection refine() {
     for (const double share : {1.0, 0.5}) {
-      fit_ = fit(query_frame(), world_from_query_, share * options_.search_radius);
+      fit_ = fit(report_.query, world_from_query_, share * options_.search_radius);
       report_.expected = static_cast<int>(fit_.predictions.size());
       report_.guided_matches = static_cast<int>(fit_.matches.size());
       if (!fit_.pose.success) return LoopRejection::kNoPose;
@@ -145,7 +145,7 @@ class LoopVerifier {
       const SE3 as_long_as_there(query_from_neighbour.rotation(),
                                  report_.scale * query_from_neighbour.translation());
       const Fit seen =
-          fit(*neighbour.frame, world_from_query_ * as_long_as_there, options_.search_radius);
+          fit(c.keyframe, world_from_query_ * as_long_as_there, options_.search_radius);
       const int expected = static_cast<int>(seen.predictions.size());
       if (expected < kMinExpected) continue;
       ++report_.confirming;
@@ -166,9 +166,11 @@ class LoopVerifier {
     PoseReport pose;                           // as refined on the matches
   };
 
-  Fit fit(const Frame& frame, const SE3& world_from_camera, double radius) const {
+  Fit fit(KeyframeId keyframe, const SE3& world_from_camera, double radius) const {
+    const Frame& frame = *map_.keyframe(keyframe).frame;
+    const Camera& camera = map_.camera_of(keyframe);
     Fit fit;
-    fit.predictions = predict(world_from_camera, radius);
+    fit.predictions = predict(camera, world_from_camera, radius);
     const KeypointGrid grid(frame.pixels);
     const GuidedMatchingOptions matching{traits_.max_distance,
                                          static_cast<float>(options_.search_ratio), 0.0F};
@@ -176,24 +178,29 @@ class LoopVerifier {
     for (Match& m : fit.matches) {
       m.a = fit.predictions[static_cast<std::size_t>(m.a)].descriptor_row;
     }
-    fit.pose = optimize_pose(camera_, world_from_camera,
-                             observations(frame, world_from_camera, fit.matches), options_.pose);
+    fit.pose =
+        optimize_pose(camera, world_from_camera,
+                      observations(frame, camera, world_from_camera, fit.matches), options_.pose);
     return fit;
   }
 
   const Frame& query_frame() const { return *map_.keyframe(report_.query).frame; }
+  const Camera& query_camera() const { return map_.camera_of(report_.query); }
   const MapPoint& point(int row) const {
     return map_.point(points_[static_cast<std::size_t>(row)]);
   }
 
   // Depths are left out of the search, so that they can bear witness afterwards.
-  std::vector<PixelPrediction> predict(const SE3& world_from_camera, double radius) const {
-    const float pixels = static_cast<float>(radius * camera_.width / 640.0);
-    const PointPredictor predictor(camera_, world_from_camera, {kMaxViewAngle, kMaxDistanceRatio});
+  std::vector<PixelPrediction> predict(const Camera& camera, const SE3& world_from_camera,
+                                       double radius) const {
+    const double pixels = radius * camera.width / 640.0;
+    const PointPredictor predictor(camera, world_from_camera, {kMaxViewAngle, kMaxDistanceRatio});
     std::vector<PixelPrediction> predictions;
     for (int row = 0; row < descriptors_.rows; ++row) {
       const auto place = predictor.place_of(point(row));
-      if (place) predictions.push_back({row, place->pixel.cast<float>(), pixels, 0.0F});
+      if (!place) continue;
+      predictions.push_back(
+          {row, place->pixel.cast<float>(), static_cast<float>(pixels * place->stretch), 0.0F});
     }
     return predictions;
   }
@@ -204,7 +211,8 @@ class LoopVerifier {
     return std::abs(z - measured) <= options_.depth_tolerance * z;
   }
 
-  std::vector<PoseObservation> observations(const Frame& frame, const SE3& world_from_camera,
+  std::vector<PoseObservation> observations(const Frame& frame, const Camera& camera,
+                                            const SE3& world_from_camera,
                                             const std::vector<Match>& matches) const {
     const SE3 camera_from_world = world_from_camera.inverse();
     std::vector<PoseObservation> observations;
@@ -212,15 +220,13 @@ class LoopVerifier {
       const auto k = static_cast<std::size_t>(m.b);
       const Eigen::Vector3d& position = point(m.a).position;
       const double z = (camera_from_world * position).z();
-      observations.push_back({position, frame.pixels[k].cast<double>(),
-                              agreeing_disparity(frame, k, camera_, z),
-                              static_cast<double>(frame.sigmas[k])});
+      observations.push_back({position, measurement_of(frame, k, camera, z)});
     }
     return observations;
   }
 
   void collect_inliers() {
-    AreaCounts found(camera_.view());
+    AreaCounts found(query_camera().view());
     AreaCounts expected = found;
     for (std::size_t i = 0; i < fit_.matches.size(); ++i) {
       if (fit_.pose.inlier[i] == 0) continue;
@@ -251,7 +257,7 @@ class LoopVerifier {
       const auto k = static_cast<std::size_t>(m.b);
       if (!frame.has_depth(k)) continue;
       const Eigen::Vector3d in_camera = camera_from_world * point(m.a).position;
-      const double error2 = camera_.squared_error(in_camera, frame.pixels[k].cast<double>());
+      const double error2 = query_camera().squared_error(in_camera, frame.pixels[k].cast<double>());
       const double sigma = static_cast<double>(frame.sigmas[k]);
       if (error2 > options_.pose.chi2_pixel * sigma * sigma) continue;
       ++measured;
@@ -280,7 +286,6 @@ class LoopVerifier {
   }
 
   const Map& map_;
-  const Camera& camera_;
   const DescriptorTraits& traits_;
   const LoopVerificationOptions& options_;
   LoopVerification report_;
@@ -324,9 +329,9 @@ const char* describe(LoopRejection rejection) {
 }
 
 LoopVerification verify_loop(const Map& map, KeyframeId query, KeyframeId candidate,
-                             const Camera& camera, const DescriptorTraits& traits,
+                             const DescriptorTraits& traits,
                              const LoopVerificationOptions& options) {
-  return LoopVerifier(map, camera, traits, options).run(query, candidate);
+  return LoopVerifier(map, traits, options).run(query, candidate);
 }
 
 }  // namespace dxslam

@@ -138,7 +138,7 @@ struct LoopVerification {
 /// finds a pose, the points are sought again where it puts them, and the pose is refined. Takes
 /// nothing from the relative pose that the map believes in. Deterministic.
 LoopVerification verify_loop(const Map& map, KeyframeId query, KeyframeId candidate,
-                             const Camera& camera, const DescriptorTraits& traits,
+                             const DescriptorTraits& traits,
                              const LoopVerificationOptions& options);
 
 }  // namespace dxslam

@@ -14,7 +14,7 @@ namespace {
 class LoopVerificationTest : public testing::Test {
  protected:
   LoopVerification verify(const RingWalk& walk, KeyframeId query, KeyframeId candidate) {
-    return verify_loop(walk.map, query, candidate, scene_.camera(), scene_.traits(), options_);
+    return verify_loop(walk.map, query, candidate, scene_.traits(), options_);
   }
 
   RingScene scene_{10.0, 45.0};  // 63 m round

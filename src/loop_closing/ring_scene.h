@@ -147,6 +147,7 @@ class RingWalk {
     metres_ = metres;
     std::vector<int> sources;
     FramePtr frame = scene_.frame(static_cast<std::int64_t>(truth_.size()), metres, sources);
+    map.add_camera(scene_.camera());
     last_ = map.add_keyframe(frame, estimate_, begin ? kNoId : last_);
     truth_.push_back(scene_.pose(metres));
     for (std::size_t i = 0; i < sources.size(); ++i)

@@ -77,6 +77,7 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId reference, const LocalMapO
   local->reference = reference;
   local->component = keyframe.component;
   local->reference_frame = keyframe.frame;
+  local->reference_camera = map.camera_of(reference);
   local->world_from_reference = keyframe.world_from_camera;
   local->reference_points = keyframe.points;
   local->keyframes = local_keyframes(map, reference, options);

@@ -37,6 +37,7 @@ struct LocalMap {
   KeyframeId reference = kNoId;
   std::uint32_t component = 0;  ///< of all that is in here
   FramePtr reference_frame;
+  Camera reference_camera;
   SE3 world_from_reference;
   std::vector<PointId> reference_points;  ///< one per keypoint of the reference; kNoId: none
 

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "core/rig.h"
 #include "map/id_table.h"
 #include "map/map_types.h"
 #include "map/removed_keyframes.h"
@@ -23,6 +24,14 @@ class Map {
   /// it is and the rest follows, without looking at descriptors. Throws ContractError naming the
   /// first relation that does not hold.
   explicit Map(MapParts parts);
+
+  /// The id of a camera for the frames that it takes; added to the rig where it is not there.
+  CameraId add_camera(const Camera& camera) { return rig_.add(camera); }
+  const Rig& rig() const { return rig_; }
+  /// The camera that took a keyframe. Throws ContractError where there is no such keyframe, or its
+  /// frame names a camera that was not added.
+  const Camera& camera_of(KeyframeId id) const { return rig_[keyframe(id).frame->camera]; }
+
   /// Adds a keyframe without points. `parent` must exist, or be kNoId for the first one of a new
   /// component.
   KeyframeId add_keyframe(FramePtr frame, const SE3& world_from_camera, KeyframeId parent);
@@ -91,6 +100,7 @@ class Map {
   void bind_observations(const MapPoint& point);
   void count_covisibility();
 
+  Rig rig_;
   IdTable<Keyframe> keyframes_;
   IdTable<MapPoint> points_;
   RemovedKeyframes removed_;

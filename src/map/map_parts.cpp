@@ -68,6 +68,8 @@ void check_keyframes(const MapParts& parts) {
     expect(k.id == i, "keyframe {} has the id {}", i, k.id);
     check_frame(k, *model);
     if (model->size() == 0) model = k.frame.get();
+    expect(parts.rig.has(k.frame->camera), "keyframe {} was taken by camera {} of {}", i,
+           k.frame->camera, parts.rig.size());
     expect(k.world_from_camera.translation().allFinite() &&
                k.world_from_camera.rotation().coeffs().allFinite(),
            "the pose of keyframe {} is not finite", i);
@@ -92,6 +94,7 @@ void check_point(const MapPoint& p, std::size_t keyframes) {
 
 MapParts take_apart(const Map& map) {
   MapParts parts;
+  parts.rig = map.rig();
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   std::vector<KeyframeId> number(ids.empty() ? 0 : ids.back() + 1, kNoId);
   for (std::size_t i = 0; i < ids.size(); ++i) number[ids[i]] = static_cast<KeyframeId>(i);
@@ -126,6 +129,7 @@ MapParts take_apart(const Map& map) {
 
 Map::Map(MapParts parts) {
   check_keyframes(parts);
+  rig_ = std::move(parts.rig);
   for (Keyframe& k : parts.keyframes) {
     k.points.assign(k.frame->size(), kNoId);
     k.covisibles.clear();

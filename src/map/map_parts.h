@@ -12,6 +12,7 @@ namespace dxslam {
 /// as a snapshot that another thread may read, since frames are shared and never change.
 /// Map(MapParts) makes a map of it again.
 struct MapParts {
+  Rig rig;  ///< of all frames
   /// By id. `points` and `covisibles` follow from the points' observations and are not looked at.
   std::vector<Keyframe> keyframes;
   std::vector<MapPoint> points;  ///< by id

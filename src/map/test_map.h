@@ -18,6 +18,7 @@ namespace dxslam {
 /// A map of `n` keyframes along the path in which every scene point is one map point.
 struct BuiltMap {
   explicit BuiltMap(int n) {
+    map.add_camera(scene.camera());
     std::map<int, PointId> point_of;
     for (int k = 0; k < n; ++k) {
       std::vector<int> source;

@@ -50,7 +50,8 @@ class PointPredictor {
 
   struct Place {
     Eigen::Vector2d pixel;
-    double depth = 0.0;  ///< metres along the camera's z
+    double depth = 0.0;    ///< metres along the camera's z
+    double stretch = 1.0;  ///< Camera::stretch() there
   };
   /// Empty if the point is out of view or seen from out of the range. Arguments as in MapPoint.
   std::optional<Place> place_of(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
@@ -58,7 +59,7 @@ class PointPredictor {
     const Eigen::Vector3d p = camera_from_world_ * position;
     const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
     if (!pixel || !range_.contains(centre_, position, normal, usual_distance)) return std::nullopt;
-    return Place{*pixel, p.z()};
+    return Place{*pixel, p.z(), camera_.stretch(*pixel)};
   }
   std::optional<Place> place_of(const MapPoint& point) const {
     return place_of(point.position, point.normal, point.distance);

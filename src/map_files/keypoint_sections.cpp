@@ -110,9 +110,8 @@ std::size_t keypoint_capacity(SectionReader reader, const DescriptorTraits& trai
   return reader.left() / size;
 }
 
-void read_keypoints(SectionReader reader, const MapHeader& header,
+void read_keypoints(SectionReader reader, const DescriptorTraits& traits, const Rig& rig,
                     const std::vector<std::shared_ptr<Frame>>& frames) {
-  const DescriptorTraits& traits = header.traits;
   const DescriptorCoding coding = read_coding(reader, traits.binary);
   std::vector<std::string_view> records;
   records.reserve(frames.size());
@@ -129,7 +128,7 @@ void read_keypoints(SectionReader reader, const MapHeader& header,
     const bool possible = coding != DescriptorCoding::kFloat32 ||
                           are_possible_descriptors(f.descriptors.ptr<float>(), f.size(),
                                                    static_cast<std::size_t>(traits.dimension));
-    if (!possible || !are_possible_keypoints(f, header.camera)) {
+    if (!possible || !are_possible_keypoints(f, rig[f.camera])) {
       reader.fail(fmt::format("a keypoint of keyframe {} has impossible numbers", i));
     }
   });

@@ -28,16 +28,28 @@ std::uint32_t component_of(const Map& map, const MapPoint& p) {
   return map.keyframe(p.observations.front().keyframe).component;
 }
 
-std::string cameras_text(const Camera& c) {
+// COLMAP does not know every lens: keypoints of the others are given undistorted.
+bool is_known_to_colmap(const Camera& c) {
+  return c.has_distortion() && c.lens.model->colmap_name != nullptr;
+}
+
+std::string camera_text(const Camera& c) {
   const double x = c.cx + kColmapPixelCentre;
   const double y = c.cy + kColmapPixelCentre;
-  const std::string intrinsics = fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}", c.fx, c.fy, x, y);
-  const std::string size = fmt::format("{} {}", c.width, c.height);
-  const std::string model =
-      c.has_distortion() ? fmt::format("FULL_OPENCV {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} 0 0 0",
-                                       size, intrinsics, c.k1, c.k2, c.p1, c.p2, c.k3)
-                         : fmt::format("PINHOLE {} {}", size, intrinsics);
-  return fmt::format("# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n1 {}\n", model);
+  std::string text = is_known_to_colmap(c) ? c.lens.model->colmap_name : "PINHOLE";
+  text += fmt::format(" {} {} {:.9g} {:.9g} {:.9g} {:.9g}", c.width, c.height, c.fx, c.fy, x, y);
+  for (std::size_t i = 0; is_known_to_colmap(c) && i < c.lens.model->colmap_parameters; ++i) {
+    text += fmt::format(" {:.9g}", c.lens.parameters[i]);
+  }
+  return text;
+}
+
+std::string cameras_text(const Rig& rig) {
+  std::string text = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
+  for (std::size_t i = 0; i < rig.size(); ++i) {
+    text += fmt::format("{} {}\n", i + 1, camera_text(rig[static_cast<CameraId>(i)]));
+  }
+  return text;
 }
 
 std::string image_name(const Keyframe& k, std::set<std::string>& taken) {
@@ -60,11 +72,12 @@ void append_image(const Keyframe& k, const Camera& camera, const std::string& na
   const Eigen::Quaterniond& q = camera_from_world.rotation();
   const Eigen::Vector3d& t = camera_from_world.translation();
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "{} {:.12g} {:.12g} {:.12g} {:.12g} {:.9g} {:.9g} {:.9g} 1 {}\n", k.id + 1,
-                 q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), name);
+  fmt::format_to(out, "{} {:.12g} {:.12g} {:.12g} {:.12g} {:.9g} {:.9g} {:.9g} {} {}\n", k.id + 1,
+                 q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), k.frame->camera + 1, name);
   const char* separator = "";
   for (std::size_t i = 0; i < k.frame->size(); ++i) {
-    const Eigen::Vector2d raw = camera.distort(k.frame->pixels[i].cast<double>());
+    const Eigen::Vector2d pixel = k.frame->pixels[i].cast<double>();
+    const Eigen::Vector2d raw = is_known_to_colmap(camera) ? camera.distort(pixel) : pixel;
     fmt::format_to(out, "{}{:.4f} {:.4f} {}", separator, raw.x() + kColmapPixelCentre,
                    raw.y() + kColmapPixelCentre,
                    k.points[i] == kNoId ? std::int64_t{-1} : std::int64_t{k.points[i]} + 1);
@@ -74,14 +87,14 @@ void append_image(const Keyframe& k, const Camera& camera, const std::string& na
 }
 
 // Mean distance in pixels of where the keyframes see a point to where it should be; COLMAP's error.
-double mean_error(const Map& map, const MapPoint& p, const Camera& camera) {
+double mean_error(const Map& map, const MapPoint& p) {
   double sum = 0.0;
   int count = 0;
   for (const PointObservation& o : p.observations) {
     const Keyframe& k = map.keyframe(o.keyframe);
     const Eigen::Vector3d in_camera = k.world_from_camera.inverse() * p.position;
     const double error2 =
-        camera.squared_error(in_camera, k.frame->pixels[o.keypoint].cast<double>());
+        map.camera_of(k.id).squared_error(in_camera, k.frame->pixels[o.keypoint].cast<double>());
     if (std::isinf(error2)) continue;  // behind the camera
     sum += std::sqrt(error2);
     ++count;
@@ -89,12 +102,12 @@ double mean_error(const Map& map, const MapPoint& p, const Camera& camera) {
   return count > 0 ? sum / count : -1.0;
 }
 
-void append_point(const Map& map, const MapPoint& p, const Camera& camera, std::string& text) {
+void append_point(const Map& map, const MapPoint& p, std::string& text) {
   const Rgb color = color_of_score(seen_share(p));
   auto out = std::back_inserter(text);
   fmt::format_to(out, "{} {:.9g} {:.9g} {:.9g} {} {} {} {:.6g}", std::int64_t{p.id} + 1,
                  p.position.x(), p.position.y(), p.position.z(), color[0], color[1], color[2],
-                 mean_error(map, p, camera));
+                 mean_error(map, p));
   for (const PointObservation& o : p.observations) {
     fmt::format_to(out, " {} {}", std::int64_t{o.keyframe} + 1, o.keypoint);
   }
@@ -122,7 +135,6 @@ void write_map_ply(const std::string& path, const Map& map, std::uint32_t compon
 void write_map_colmap(const std::string& folder, const StoredMap& stored) {
   namespace fs = std::filesystem;
   const Map& map = stored.map;
-  const Camera& camera = stored.header.camera;
   for (std::uint32_t component = 0; component < map.component_count(); ++component) {
     const fs::path model = fs::path(folder) / std::to_string(component);
     make_folder(model.string());
@@ -132,15 +144,15 @@ void write_map_colmap(const std::string& folder, const StoredMap& stored) {
       const Keyframe& k = map.keyframe(id);
       if (k.component != component) continue;
       const std::string name = image_name(k, names);
-      append_image(k, camera, name, images);
+      append_image(k, map.camera_of(id), name, images);
       write_thumbnail(model / "thumbnails", stored, id, name);
     }
     std::string points = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n";
     for (const PointId id : map.point_ids()) {
       const MapPoint& p = map.point(id);
-      if (component_of(map, p) == component) append_point(map, p, camera, points);
+      if (component_of(map, p) == component) append_point(map, p, points);
     }
-    write_file_atomically((model / "cameras.txt").string(), cameras_text(camera));
+    write_file_atomically((model / "cameras.txt").string(), cameras_text(map.rig()));
     write_file_atomically((model / "images.txt").string(), images);
     write_file_atomically((model / "points3D.txt").string(), points);
   }

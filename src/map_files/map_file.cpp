@@ -50,7 +50,8 @@ std::size_t expected_size(const MapSnapshot& snapshot, DescriptorCoding coding) 
   std::size_t pictures = 0;
   for (const std::string& picture : snapshot.thumbnails) pictures += picture.size() + 4;
   const auto global = static_cast<std::size_t>(snapshot.header.traits.global_dimension);
-  return 4096 + snapshot.parts.keyframes.size() * (96 + global * sizeof(float)) +
+  return 4096 + snapshot.parts.rig.size() * 256 +
+         snapshot.parts.keyframes.size() * (96 + global * sizeof(float)) +
          keypoints * keypoint_size(coding, snapshot.header.traits.dimension) +
          snapshot.parts.points.size() * 80 + observations * 8 + snapshot.loops.size() * 64 +
          pictures;
@@ -87,8 +88,8 @@ class Sections {
   }
 
   void check_known(const Section& s) const {
-    const char* const known[] = {kHeaderId, kKeyframesId, kKeypointsId, kGlobalsId,
-                                 kPointsId, kLoopsId,     kThumbnailsId};
+    const char* const known[] = {kHeaderId,  kCamerasId, kKeyframesId, kKeypointsId,
+                                 kGlobalsId, kPointsId,  kLoopsId,     kThumbnailsId};
     const bool is_known = s.version == kSectionVersion &&
                           std::find(std::begin(known), std::end(known), s.id) != std::end(known);
     if (is_known || !s.required) return;
@@ -102,14 +103,16 @@ class Sections {
   std::string where_;
 };
 
-MapParts read_parts(const Sections& sections, const MapHeader& header) {
-  const DescriptorTraits& traits = header.traits;
+MapParts read_parts(const Sections& sections, const DescriptorTraits& traits, Rig rig,
+                    const std::string& where) {
   MapParts parts;
+  parts.rig = std::move(rig);
+  if (const auto cameras = sections.optional(kCamerasId)) parts.rig = read_cameras(*cameras, where);
   std::vector<std::shared_ptr<Frame>> frames;
   const SectionReader keypoints = sections.needed(kKeypointsId);
   read_keyframes(sections.needed(kKeyframesId), keypoint_capacity(keypoints, traits), parts,
                  frames);
-  read_keypoints(keypoints, header, frames);
+  read_keypoints(keypoints, traits, parts.rig, frames);
   if (const auto globals = sections.optional(kGlobalsId); globals && traits.global_dimension > 0) {
     read_globals(*globals, traits, frames);
   }
@@ -180,7 +183,8 @@ void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFil
   const DescriptorCoding coding = traits.binary ? DescriptorCoding::kBytes : floats;
   require_map_or_nothing(path);
   SectionWriter file(expected_size(snapshot, coding));
-  write_header(snapshot.header, file);
+  write_header(snapshot.header, snapshot.parts.rig, file);
+  write_cameras(snapshot.parts.rig, file);
   write_keyframes(snapshot.parts, file);
   write_keypoints(snapshot.parts, traits, coding, file);
   write_globals(snapshot.parts, traits, floats, file);
@@ -203,8 +207,9 @@ StoredMap load_map(const std::string& path) {
 
 StoredMap parse_map(const char* bytes, std::size_t size, const std::string& where) {
   const Sections sections(read_sections({bytes, size}, where), where);
-  MapHeader header = read_header(sections.needed(kHeaderId), where);
-  MapParts parts = read_parts(sections, header);
+  Rig rig;
+  MapHeader header = read_header(sections.needed(kHeaderId), rig, where);
+  MapParts parts = read_parts(sections, header.traits, std::move(rig), where);
   if (parts.keyframes.empty()) {
     throw InputError(where + ": a map without keyframes, expected at least one");
   }
@@ -249,20 +254,6 @@ void require_same_features(const MapHeader& map, const MapHeader& current,
                   "cannot be compared",
                   where, features_of(map), features_of(current),
                   other_weights ? " of another training (the weights' hashes differ)" : ""));
-}
-
-void require_same_camera(const MapHeader& map, const MapHeader& current, const std::string& where) {
-  const Camera& a = map.camera;
-  const Camera& b = current.camera;
-  // Keypoints are stored undistorted: the lens does not matter.
-  const double pixels = std::max(
-      {std::abs(a.fx - b.fx), std::abs(a.fy - b.fy), std::abs(a.cx - b.cx), std::abs(a.cy - b.cy)});
-  if (a.width == b.width && a.height == b.height && pixels < 0.01) return;
-  throw InputError(fmt::format(
-      "{}: the map was made with a camera of {}x{} pixels, fx {:.2f} fy {:.2f} cx {:.2f} cy "
-      "{:.2f}, "
-      "expected {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}",
-      where, a.width, a.height, a.fx, a.fy, a.cx, a.cy, b.width, b.height, b.fx, b.fy, b.cx, b.cy));
 }
 
 }  // namespace dxslam

@@ -6,16 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.h"
 #include "core/features.h"
 #include "core/se3.h"
 #include "map/map_parts.h"
 
 namespace dxslam {
 
-/// What a map was made with.
+/// What a map was made with, apart from the cameras, which the map itself knows.
 struct MapHeader {
-  Camera camera;
   std::string extractor;  ///< FeatureExtractor::name()
   /// SHA-256 of the network's weights; empty where there is no network or it is not known.
   std::string model_hash;
@@ -94,8 +92,5 @@ std::vector<MapFileSection> list_map_sections(const std::string& path);
 /// descriptors of the two cannot be compared: another network, or another extractor.
 void require_same_features(const MapHeader& map, const MapHeader& current,
                            const std::string& where);
-/// Throws InputError if keypoints of the two cameras cannot be adjusted together: another
-/// projection. Localization in a map does not need this.
-void require_same_camera(const MapHeader& map, const MapHeader& current, const std::string& where);
 
 }  // namespace dxslam

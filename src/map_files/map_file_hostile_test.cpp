@@ -231,6 +231,7 @@ TEST(HostileMapFile, CannotAskForMorePairsOfKeyframesThanItPaysFor) {
   cut(frame->sigmas);
   frame->descriptors = frame->descriptors.rowRange(0, 1);
   MapSnapshot snapshot{sample_header(), {}, {}, {}};
+  snapshot.parts.rig = Rig(test_camera());
   MapPoint p;
   p.id = p.created_by = 0;
   for (KeyframeId id = 0; id < 8000; ++id) {  // 512 MB of pairs
@@ -245,7 +246,7 @@ TEST(HostileMapFile, CannotAskForMorePairsOfKeyframesThanItPaysFor) {
   snapshot.parts.points.push_back(p);
   EXPECT_FALSE(is_possible_covisibility(snapshot.parts));
   SectionWriter file(0);
-  write_header(snapshot.header, file);
+  write_header(snapshot.header, snapshot.parts.rig, file);
   write_keyframes(snapshot.parts, file);
   write_keypoints(snapshot.parts, snapshot.header.traits, DescriptorCoding::kInt8, file);
   write_points(snapshot.parts, file);

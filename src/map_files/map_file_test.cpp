@@ -31,8 +31,7 @@ TEST(MapFile, HoldsAllOfAMap) {
     EXPECT_EQ(stored.header.traits.dimension, 32);
     EXPECT_EQ(stored.header.traits.global_dimension, binary ? 0 : 16);
     EXPECT_EQ(stored.header.traits.max_distance, snapshot.header.traits.max_distance);
-    EXPECT_EQ(stored.header.camera.fx, snapshot.header.camera.fx);
-    EXPECT_EQ(stored.header.camera.max_depth, snapshot.header.camera.max_depth);
+    EXPECT_EQ(stored.map.rig().cameras(), snapshot.parts.rig.cameras());
     ASSERT_EQ(stored.loops.size(), 1U);
     EXPECT_EQ(stored.loops[0].b, 2U);  // keyframe 3, since keyframe 2 was removed
     EXPECT_LT((stored.loops[0].a_from_b.matrix() - snapshot.loops[0].a_from_b.matrix()).norm(),
@@ -62,7 +61,7 @@ TEST(MapFile, IsTheSameAfterLoadingAndSaving) {
 // The file as it would be with all checksums right, whatever its numbers are.
 std::string unchecked_bytes(const MapSnapshot& snapshot, DescriptorCoding coding) {
   SectionWriter file(1000);
-  write_header(snapshot.header, file);
+  write_header(snapshot.header, snapshot.parts.rig, file);
   write_keyframes(snapshot.parts, file);
   write_keypoints(snapshot.parts, snapshot.header.traits, coding, file);
   write_globals(snapshot.parts, snapshot.header.traits, coding, file);
@@ -74,7 +73,9 @@ std::string unchecked_bytes(const MapSnapshot& snapshot, DescriptorCoding coding
 
 TEST(MapFile, IsNeverOfAnEmptyMap) {
   const TestFolder folder;
-  const MapSnapshot empty = take_snapshot(sample_header(), Map());
+  Map map;
+  map.add_camera(test_camera());
+  const MapSnapshot empty = take_snapshot(sample_header(), map);
   save_map(folder / "m", sample_snapshot());
   expect_input_error([&] { save_map(folder / "m", empty); },
                      {"m: the map is not saved", "no keyframe"});
@@ -128,8 +129,12 @@ TEST(MapFile, HoldsNoImpossibleNumbers) {
   expect_refused([&](MapSnapshot& s, Frame&) { s.parts.keyframes[2].world_from_camera = far; });
   expect_refused([&](MapSnapshot& s, Frame&) { s.loops[0].a_from_b = far; });
   expect_refused([&](MapSnapshot& s, Frame&) { s.thumbnails[0].resize(std::size_t{2} << 20); });
-  expect_refused([&](MapSnapshot& s, Frame&) { s.header.camera.fx = -1.0; });
-  expect_refused([&](MapSnapshot& s, Frame&) { s.header.camera.k1 = -5.0; });
+  Camera camera = test_camera();
+  camera.fx = -1.0;
+  expect_refused([&](MapSnapshot& s, Frame&) { s.parts.rig = Rig(camera); });
+  camera = test_camera();
+  camera.lens.parameters[0] = -5.0;
+  expect_refused([&](MapSnapshot& s, Frame&) { s.parts.rig = Rig(camera); });
   expect_refused([&](MapSnapshot& s, Frame&) { s.header.traits.max_distance = std::nanf(""); });
   EXPECT_EQ(folder.read("m"), good);
 }
@@ -224,7 +229,7 @@ std::string with_section(const MapSnapshot& snapshot, const char* id, std::uint3
   SectionWriter file(1000);
   file.begin(id, version, required);
   file.put_text("from the future");
-  write_header(snapshot.header, file);
+  write_header(snapshot.header, snapshot.parts.rig, file);
   write_keyframes(snapshot.parts, file);
   write_keypoints(snapshot.parts, snapshot.header.traits, DescriptorCoding::kInt8, file);
   write_globals(snapshot.parts, snapshot.header.traits, DescriptorCoding::kInt8, file);
@@ -282,7 +287,7 @@ TEST(MapFile, RefusesAnotherFormat) {
 
 TEST(MapFile, RefusesFilesWithoutANeededSection) {
   SectionWriter file(1000);
-  write_header(sample_header(), file);
+  write_header(sample_header(), Rig(test_camera()), file);
   const std::string bytes = file.finish();
   expect_input_error([&] { parse_map(bytes.data(), bytes.size(), "f"); }, {"is missing"});
 }
@@ -312,7 +317,7 @@ TEST(MapFile, ReadsTheFirstVersion) {
   EXPECT_EQ(stored.header.extractor, "sample");
   EXPECT_EQ(stored.header.model_hash, std::string(64, 'a'));
   EXPECT_EQ(stored.header.traits.dimension, 32);
-  EXPECT_EQ(stored.header.camera.cx, 319.5);
+  EXPECT_EQ(stored.map.rig()[0].cx, 319.5);
   ASSERT_EQ(stored.map.keyframe_count(), kV1Keyframes);
   ASSERT_EQ(stored.map.point_count(), kV1Points);
   EXPECT_EQ(stored.map.component_count(), 2U);
@@ -361,14 +366,50 @@ TEST(MapHeader, OfAnotherNetworkIsRefused) {
                      {"`sample` (32 floats), in use are `orb` (32 bytes)"});
 }
 
-TEST(MapHeader, OfAnotherCameraIsRefused) {
-  const MapHeader map = sample_header();
-  MapHeader current = map;
-  current.camera.k1 = 0.1;
-  EXPECT_NO_THROW(require_same_camera(map, current, "m.dxmap"));
-  current.camera.fx += 1.0;
-  expect_input_error([&] { require_same_camera(map, current, "m.dxmap"); },
-                     {"m.dxmap", "fx 525.00", "fx 526.00"});
+// Every lens, and readings of a camera that the header has no room for.
+TEST(MapFile, KeepsAllCameras) {
+  const TestFolder folder;
+  MapSnapshot snapshot = sample_snapshot();
+  for (const LensModel* model : lens_models()) {
+    Camera camera = test_camera();
+    camera.readout_time = 0.02;
+    camera.lens.model = model;
+    camera.lens.parameters[0] = 0.01;
+    camera.prepare("test");
+    const CameraId id = snapshot.parts.rig.add(camera);
+    auto frame = std::make_shared<Frame>(*snapshot.parts.keyframes[id].frame);
+    frame->camera = id;
+    snapshot.parts.keyframes[id].frame = frame;
+  }
+  save_map(folder / "m", snapshot);
+  const Map map = load_map(folder / "m").map;
+  EXPECT_EQ(map.rig().cameras(), snapshot.parts.rig.cameras());
+  for (KeyframeId id = 1; id <= lens_models().size(); ++id) {
+    EXPECT_EQ(map.keyframe(id).frame->camera, id);
+  }
+  EXPECT_TRUE(map.camera_of(3).contains({300.0, 200.0})) << "it is prepared";
+}
+
+TEST(MapFile, RefusesCamerasThatItDoesNotKnow) {
+  MapSnapshot snapshot = sample_snapshot();
+  auto frame = std::make_shared<Frame>(*snapshot.parts.keyframes[1].frame);
+  frame->camera = 1;
+  snapshot.parts.keyframes[1].frame = frame;
+  const TestFolder folder;
+  EXPECT_THROW(save_map(folder / "m", snapshot), ContractError);
+  std::string file = unchecked_bytes(snapshot, DescriptorCoding::kInt8);
+  expect_input_error([&] { parse_map(file.data(), file.size(), "f"); },
+                     {"f: ", "keyframe 1 of camera 1 of 1"});
+  SectionWriter newer(1000);
+  const LensModel model{"periscope", {}, true, false, nullptr, 0, nullptr, nullptr};
+  Camera camera = test_camera();
+  camera.lens.model = &model;
+  write_header(snapshot.header, Rig(test_camera()), newer);
+  write_cameras(Rig(camera), newer);
+  write_keyframes(snapshot.parts, newer);
+  file = newer.finish();
+  expect_input_error([&] { parse_map(file.data(), file.size(), "f"); },
+                     {"f: ", "periscope", "a newer dxslam"});
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ bool are_possible_lengths(const Frame& f) {
          f.descriptors.rows == static_cast<int>(n);
 }
 
-void check_frame(const Keyframe& k, const MapHeader& header, const Camera& camera,
+void check_frame(const Keyframe& k, const MapHeader& header, const Rig& rig,
                  const std::string& where) {
   const auto expect = [&](bool possible, const char* what) {
     if (possible) return;
@@ -53,7 +53,7 @@ void check_frame(const Keyframe& k, const MapHeader& header, const Camera& camer
           "a frame to be saved needs as many depths, scores, sigmas and descriptors as keypoints");
   expect(is_possible_index(f.index) && is_possible_stamp(f.stamp), "index or stamp");
   expect(is_possible(k.world_from_camera), "the pose");
-  expect(are_possible_keypoints(f, camera), "the keypoints");
+  expect(are_possible_keypoints(f, rig[f.camera]), "the keypoints");
   if (!header.traits.binary && f.descriptors.type() == CV_32FC1) {
     expect(f.descriptors.isContinuous() &&
                are_possible_descriptors(f.descriptors.ptr<float>(), f.size(),
@@ -155,13 +155,13 @@ void check_numbers(const MapSnapshot& snapshot, const std::string& where) {
     if (!possible) throw InputError(fmt::format("{}: the map is not saved: {}", where, what));
   };
   const MapHeader& header = snapshot.header;
-  Camera camera = header.camera;
-  camera.prepare(where);
+  for (Camera camera : snapshot.parts.rig.cameras()) camera.prepare(where);
   expect(is_possible(header.traits), "its descriptors are of an impossible kind");
   expect(is_possible_text(header.extractor) && is_possible_text(header.model_hash),
          "the name of its features is too long or holds control characters");
   expect(!snapshot.parts.keyframes.empty(), "it has no keyframe");
-  for (const Keyframe& k : snapshot.parts.keyframes) check_frame(k, header, camera, where);
+  for (const Keyframe& k : snapshot.parts.keyframes)
+    check_frame(k, header, snapshot.parts.rig, where);
   for (const MapPoint& p : snapshot.parts.points) {
     if (!is_possible(p)) expect(false, fmt::format("impossible numbers in point {}", p.id));
   }

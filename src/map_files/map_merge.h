@@ -11,7 +11,7 @@ namespace dxslam {
 /// Both maps in one, the keyframes, points and components of `b` behind those of `a`, each with the
 /// world it had: Map::join_components brings two components together once a place of both was
 /// recognised. Throws InputError, naming the two by `name_a` and `name_b`, if they were made with
-/// different features or cameras.
+/// different features.
 MapSnapshot merge_maps(const StoredMap& a, const std::string& name_a, const StoredMap& b,
                        const std::string& name_b);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "io/primitives/text_file.h"
 #include "map_files/map_limits.h"
 
 namespace dxslam {
@@ -27,7 +28,7 @@ struct StoredKeyframe {
   std::uint32_t parent;
   std::uint32_t component;
   std::uint32_t keypoints;
-  std::uint32_t reserved;
+  std::uint32_t camera;
 };
 static_assert(sizeof(StoredKeyframe) == 88);
 
@@ -51,6 +52,13 @@ struct StoredLoop {
 };
 static_assert(sizeof(StoredLoop) == 64);
 
+// The header knows one lens, k1 k2 p1 p2 k3.
+constexpr std::size_t kHeaderLensParameters = 5;
+bool is_known_to_header(const Camera& camera) { return camera.lens.model == &kRadialTangential; }
+
+// Bytes of a camera whose lens has a name of no letters.
+constexpr std::size_t kSmallestCamera = 8 + 10 * 8 + 4 + Lens::kMaxParameters * 8;
+
 StoredPose stored(const SE3& pose) {
   StoredPose out;
   Eigen::Map<Eigen::Vector4d>(out.rotation) = pose.rotation().coeffs();
@@ -73,13 +81,16 @@ SE3 restored(const StoredPose& stored, const SectionReader& reader,
 
 }  // namespace
 
-void write_header(const MapHeader& header, SectionWriter& file) {
+void write_header(const MapHeader& header, const Rig& rig, SectionWriter& file) {
   file.begin(kHeaderId, kSectionVersion, true);
-  const Camera& c = header.camera;
+  const Camera& c = rig[0];
   file.put(static_cast<std::int32_t>(c.width));
   file.put(static_cast<std::int32_t>(c.height));
-  for (const double value : {c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.fps,
-                             c.depth_factor, c.depth_baseline, c.disparity_noise, c.max_depth}) {
+  for (const double value : {c.fx, c.fy, c.cx, c.cy}) file.put(value);
+  const Lens lens = is_known_to_header(c) ? c.lens : Lens();
+  for (std::size_t i = 0; i < kHeaderLensParameters; ++i) file.put(lens.parameters[i]);
+  for (const double value :
+       {c.fps, c.depth_factor, c.depth_baseline, c.disparity_noise, c.max_depth}) {
     file.put(value);
   }
   file.put(static_cast<std::uint32_t>(header.traits.binary ? 1 : 0));
@@ -90,17 +101,21 @@ void write_header(const MapHeader& header, SectionWriter& file) {
   file.put_text(header.model_hash);
 }
 
-MapHeader read_header(SectionReader reader, const std::string& where) {
+MapHeader read_header(SectionReader reader, Rig& rig, const std::string& where) {
   MapHeader header;
-  Camera& c = header.camera;
+  Camera c;
   c.width = reader.get<std::int32_t>();
   c.height = reader.get<std::int32_t>();
+  for (double* const value : {&c.fx, &c.fy, &c.cx, &c.cy}) *value = reader.get<double>();
+  for (std::size_t i = 0; i < kHeaderLensParameters; ++i) {
+    c.lens.parameters[i] = reader.get<double>();
+  }
   for (double* const value :
-       {&c.fx, &c.fy, &c.cx, &c.cy, &c.k1, &c.k2, &c.p1, &c.p2, &c.k3, &c.fps, &c.depth_factor,
-        &c.depth_baseline, &c.disparity_noise, &c.max_depth}) {
+       {&c.fps, &c.depth_factor, &c.depth_baseline, &c.disparity_noise, &c.max_depth}) {
     *value = reader.get<double>();
   }
   c.prepare(where);
+  rig = Rig(c);
   const auto binary = reader.get<std::uint32_t>();
   if (binary > 1) reader.fail(fmt::format("descriptors of kind {}", binary));
   DescriptorTraits& traits = header.traits;
@@ -118,6 +133,54 @@ MapHeader read_header(SectionReader reader, const std::string& where) {
   return header;
 }
 
+void write_cameras(const Rig& rig, SectionWriter& file) {
+  const bool header_says_all =
+      rig.size() == 1 && is_known_to_header(rig[0]) && rig[0].readout_time == 0.0;
+  if (header_says_all) return;
+  // A program that does not know this section would take keypoints for another camera's.
+  file.begin(kCamerasId, kSectionVersion, rig.size() > 1 || !is_known_to_header(rig[0]));
+  file.put(static_cast<std::uint32_t>(rig.size()));
+  for (const Camera& c : rig.cameras()) {
+    file.put(static_cast<std::int32_t>(c.width));
+    file.put(static_cast<std::int32_t>(c.height));
+    for (const double value : {c.fx, c.fy, c.cx, c.cy, c.fps, c.depth_factor, c.depth_baseline,
+                               c.disparity_noise, c.max_depth, c.readout_time}) {
+      file.put(value);
+    }
+    file.put_text(c.lens.model->name);
+    for (const double value : c.lens.parameters) file.put(value);
+  }
+}
+
+Rig read_cameras(SectionReader reader, const std::string& where) {
+  const std::size_t count = reader.get_count(kSmallestCamera);
+  if (count == 0) reader.fail("no camera");
+  Rig rig;
+  for (std::size_t i = 0; i < count; ++i) {
+    Camera c;
+    c.width = reader.get<std::int32_t>();
+    c.height = reader.get<std::int32_t>();
+    for (double* const value :
+         {&c.fx, &c.fy, &c.cx, &c.cy, &c.fps, &c.depth_factor, &c.depth_baseline,
+          &c.disparity_noise, &c.max_depth, &c.readout_time}) {
+      *value = reader.get<double>();
+    }
+    const std::string name = reader.get_text();
+    c.lens.model = find_lens_model(name);
+    if (c.lens.model == nullptr) {
+      throw InputError(fmt::format(
+          "{}: map file with a camera of lens {}, which this program does not know; a newer "
+          "dxslam wrote it",
+          where, in_quotes(name)));
+    }
+    for (double& value : c.lens.parameters) value = reader.get<double>();
+    c.prepare(where);
+    if (rig.add(c) != i) reader.fail("the same camera twice");
+  }
+  reader.expect_end();
+  return rig;
+}
+
 void write_keyframes(const MapParts& parts, SectionWriter& file) {
   file.begin(kKeyframesId, kSectionVersion, true);
   file.put(static_cast<std::uint32_t>(parts.keyframes.size()));
@@ -130,6 +193,7 @@ void write_keyframes(const MapParts& parts, SectionWriter& file) {
     out.parent = k.parent;
     out.component = k.component;
     out.keypoints = static_cast<std::uint32_t>(k.frame->size());
+    out.camera = k.frame->camera;
     file.put(out);
   }
 }
@@ -153,6 +217,10 @@ void read_keyframes(SectionReader reader, std::size_t max_keypoints, MapParts& p
     }
     max_keypoints -= in.keypoints;
     auto frame = std::make_shared<Frame>();
+    if (!parts.rig.has(in.camera)) {
+      reader.fail(fmt::format("keyframe {} of camera {} of {}", i, in.camera, parts.rig.size()));
+    }
+    frame->camera = in.camera;
     frame->index = in.index;
     frame->stamp = in.stamp;
     frame->pixels.resize(in.keypoints);

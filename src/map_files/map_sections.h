@@ -18,8 +18,14 @@ namespace dxslam {
 inline constexpr std::uint32_t kSectionVersion = 1;  ///< of all sections so far
 
 inline constexpr const char* kHeaderId = "HEAD";
-void write_header(const MapHeader& header, SectionWriter& file);
-MapHeader read_header(SectionReader reader, const std::string& where);
+/// The first camera is in here, as far as this section can say what it is.
+void write_header(const MapHeader& header, const Rig& rig, SectionWriter& file);
+MapHeader read_header(SectionReader reader, Rig& rig, const std::string& where);
+
+inline constexpr const char* kCamerasId = "CAMR";
+/// All cameras, where the header does not say all of them.
+void write_cameras(const Rig& rig, SectionWriter& file);
+Rig read_cameras(SectionReader reader, const std::string& where);
 
 inline constexpr const char* kKeyframesId = "KEYF";
 void write_keyframes(const MapParts& parts, SectionWriter& file);
@@ -35,7 +41,7 @@ void write_keypoints(const MapParts& parts, const DescriptorTraits& traits, Desc
                      SectionWriter& file);
 /// How many keypoints the section can hold at most, from its size alone.
 std::size_t keypoint_capacity(SectionReader reader, const DescriptorTraits& traits);
-void read_keypoints(SectionReader reader, const MapHeader& header,
+void read_keypoints(SectionReader reader, const DescriptorTraits& traits, const Rig& rig,
                     const std::vector<std::shared_ptr<Frame>>& frames);
 
 inline constexpr const char* kGlobalsId = "GLOB";

@@ -18,7 +18,7 @@ void add_reprojection(const StoredMap& stored, MapStatistics& statistics) {
       const Keyframe& k = map.keyframe(o.keyframe);
       const Eigen::Vector3d in_camera = k.world_from_camera.inverse() * p.position;
       const double error2 =
-          stored.header.camera.squared_error(in_camera, k.frame->pixels[o.keypoint].cast<double>());
+          map.camera_of(k.id).squared_error(in_camera, k.frame->pixels[o.keypoint].cast<double>());
       if (std::isinf(error2)) {
         ++statistics.behind;
       } else {

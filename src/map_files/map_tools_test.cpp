@@ -56,14 +56,26 @@ TEST(MergedMaps, CanBeJoinedWhereAPlaceIsKnown) {
   EXPECT_EQ(again.keyframe(offset).parent, offset + 1);
 }
 
-TEST(MergedMaps, OfDifferentFeaturesOrCamerasAreRefused) {
+TEST(MergedMaps, OfDifferentFeaturesAreRefused) {
   const StoredMap a = stored_sample(4);
   StoredMap b = stored_sample(4, true);
   expect_input_error([&] { merge_maps(a, "a.dxmap", b, "b.dxmap"); },
                      {"b.dxmap cannot be merged with a.dxmap", "`orb`"});
-  b.header = a.header;
-  b.header.camera.cx += 5.0;
-  expect_input_error([&] { merge_maps(a, "a.dxmap", b, "b.dxmap"); }, {"b.dxmap", "cx"});
+}
+
+TEST(MergedMaps, KeepTheCamerasOfBoth) {
+  const StoredMap a = stored_sample(4);
+  MapSnapshot other = sample_snapshot(4);
+  Camera camera = test_camera();
+  camera.cx += 5.0;
+  other.parts.rig = Rig(camera);
+  const StoredMap b{other.header, Map(other.parts), {}, {}};
+  const Map map(merge_maps(a, "a.dxmap", b, "b.dxmap").parts);
+  const auto half = static_cast<KeyframeId>(map.keyframe_count() / 2);
+  EXPECT_EQ(map.camera_of(half - 1), test_camera());
+  EXPECT_EQ(map.camera_of(half), camera);
+  const Map same(merge_maps(a, "a.dxmap", a, "a.dxmap").parts);
+  EXPECT_EQ(same.rig().size(), 1U);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -110,10 +122,13 @@ double worst_colmap_error(const std::vector<std::string>& images,
 }
 
 TEST(ColmapExport, IsAModelForEachComponent) {
-  StoredMap stored = stored_sample(5);
   for (const double k1 : {0.0, 0.05}) {
     const TestFolder folder;
-    stored.header.camera.k1 = k1;
+    MapSnapshot snapshot = sample_snapshot(5);
+    Camera camera = test_camera();
+    camera.lens.parameters[0] = k1;
+    snapshot.parts.rig = Rig(camera);
+    const StoredMap stored{snapshot.header, Map(snapshot.parts), {}, {}};
     write_map_colmap(folder.path(), stored);
     const std::vector<std::string> cameras = lines_of(folder.read("0/cameras.txt"));
     ASSERT_EQ(cameras.size(), 1U);
@@ -124,7 +139,7 @@ TEST(ColmapExport, IsAModelForEachComponent) {
     for (const std::string model : {"0", "1"}) {
       const std::vector<std::string> images = lines_of(folder.read(model + "/images.txt"));
       const std::vector<std::string> tracks = lines_of(folder.read(model + "/points3D.txt"));
-      EXPECT_LT(worst_colmap_error(images, tracks, stored.header.camera), 2.0);
+      EXPECT_LT(worst_colmap_error(images, tracks, camera), 2.0);
       keyframes += images.size() / 2;
       points += tracks.size();
     }
@@ -137,6 +152,7 @@ TEST(ColmapExport, IsAModelForEachComponent) {
 TEST(ColmapExport, GivesImagesOfOneStampDifferentNames) {
   const TestFolder folder;
   Map map;
+  map.add_camera(test_camera());
   for (int i = 0; i < 2; ++i) {
     map.add_keyframe(std::make_shared<Frame>(), SE3(), i == 0 ? kNoId : 0);
   }

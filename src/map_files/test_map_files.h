@@ -18,9 +18,7 @@ namespace dxslam {
 /// The camera and descriptors of PointScene with made-up global descriptors; or 32 bytes per
 /// keypoint and no global descriptor.
 inline MapHeader sample_header(bool binary = false) {
-  const PointScene scene(1);
   MapHeader header;
-  header.camera = scene.camera();
   header.extractor = binary ? "orb" : "sample";
   header.model_hash = binary ? "" : std::string(64, 'a');
   header.traits =
@@ -44,6 +42,7 @@ inline FramePtr sample_frame(const FramePtr& from, bool binary) {
 inline Map sample_map(int keyframes, bool binary = false, int points = 60) {
   PointScene scene(points);
   Map map;
+  map.add_camera(scene.camera());
   const auto add = [&](int k, KeyframeId parent) {
     std::vector<int> source;
     const SE3 pose = PointScene::pose(0.08 * k);

@@ -10,12 +10,13 @@ namespace {
 
 class BundleBuilder {
  public:
-  BundleBuilder(const Map& map, const Camera& camera) : map_(map), camera_(camera) {}
+  explicit BundleBuilder(const Map& map) : map_(map) { bundle_.problem.rig = map.rig(); }
 
   void add_keyframe(KeyframeId id, bool fixed) {
     if (!pose_of_.emplace(id, static_cast<int>(bundle_.keyframes.size())).second) return;
     bundle_.keyframes.push_back(id);
-    bundle_.problem.poses.push_back({map_.keyframe(id).world_from_camera, fixed});
+    const Keyframe& k = map_.keyframe(id);
+    bundle_.problem.poses.push_back({k.world_from_camera, fixed, k.frame->camera});
     if (bundle_.free_keyframes + 1 == bundle_.keyframes.size() && !fixed) ++bundle_.free_keyframes;
   }
 
@@ -58,30 +59,21 @@ class BundleBuilder {
 
  private:
   void add_observation(int pose, int point, const PointObservation& o) {
-    const Frame& frame = *map_.keyframe(o.keyframe).frame;
-    bundle_.problem.observations.push_back({pose, point, frame.pixels[o.keypoint].cast<double>(),
-                                            agreeing_disparity_of(pose, point, o),
-                                            static_cast<double>(frame.sigmas[o.keypoint])});
-  }
-
-  double agreeing_disparity_of(int pose, int point, const PointObservation& o) const {
-    const BundleProblem& problem = bundle_.problem;
+    const Keyframe& k = map_.keyframe(o.keyframe);
     const Eigen::Vector3d p =
-        problem.poses[static_cast<std::size_t>(pose)].world_from_camera.inverse() *
-        problem.points[static_cast<std::size_t>(point)];
-    return agreeing_disparity(*map_.keyframe(o.keyframe).frame, o.keypoint, camera_, p.z());
+        k.world_from_camera.inverse() * bundle_.problem.points[static_cast<std::size_t>(point)];
+    bundle_.problem.observations.push_back(
+        {pose, point, measurement_of(*k.frame, o.keypoint, map_.camera_of(o.keyframe), p.z())});
   }
 
   const Map& map_;
-  const Camera& camera_;
   LocalBundle bundle_;
   std::unordered_map<KeyframeId, int> pose_of_;
   std::unordered_map<PointId, int> point_of_;
 };
 
-LocalBundle gather_bundle_of(const Map& map, const std::vector<KeyframeId>& ids,
-                             const Camera& camera) {
-  BundleBuilder builder(map, camera);
+LocalBundle gather_bundle_of(const Map& map, const std::vector<KeyframeId>& ids) {
+  BundleBuilder builder(map);
   for (const KeyframeId id : ids) {
     if (map.keyframe(id).parent != kNoId) builder.add_keyframe(id, false);
   }
@@ -92,9 +84,9 @@ LocalBundle gather_bundle_of(const Map& map, const std::vector<KeyframeId>& ids,
 
 }  // namespace
 
-LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe, const Camera& camera,
+LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe,
                                 const MappingOptions& options) {
-  BundleBuilder builder(map, camera);
+  BundleBuilder builder(map);
   std::vector<KeyframeId> free = {keyframe};
   for (const Covisible& c :
        map.best_covisibles(keyframe, static_cast<std::size_t>(options.bundle_keyframes - 1),
@@ -113,15 +105,13 @@ LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe, const Camer
   return builder.finish();
 }
 
-LocalBundle gather_full_bundle(const Map& map, const Camera& camera) {
-  return gather_bundle_of(map, map.keyframe_ids(), camera);
-}
+LocalBundle gather_full_bundle(const Map& map) { return gather_bundle_of(map, map.keyframe_ids()); }
 
-LocalBundle gather_component_bundle(const Map& map, std::uint32_t component, const Camera& camera) {
+LocalBundle gather_component_bundle(const Map& map, std::uint32_t component) {
   std::vector<KeyframeId> ids = map.keyframe_ids();
   const auto elsewhere = [&](KeyframeId id) { return map.keyframe(id).component != component; };
   ids.erase(std::remove_if(ids.begin(), ids.end(), elsewhere), ids.end());
-  return gather_bundle_of(map, ids, camera);
+  return gather_bundle_of(map, ids);
 }
 
 int apply_local_bundle(const LocalBundle& bundle, const BundleReport& report, Map& map) {

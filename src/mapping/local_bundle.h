@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "core/camera.h"
 #include "map/map.h"
 #include "mapping/mapping_options.h"
 #include "optimization/bundle_adjustment.h"
@@ -21,13 +20,12 @@ struct LocalBundle {
 
 /// The keyframe and those that share most points with it are free, with all points they see; other
 /// keyframes that see these points hold the border.
-LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe, const Camera& camera,
-                                const MappingOptions& options);
+LocalBundle gather_local_bundle(const Map& map, KeyframeId keyframe, const MappingOptions& options);
 
 /// All keyframes and points; the first keyframe of each component is held.
-LocalBundle gather_full_bundle(const Map& map, const Camera& camera);
+LocalBundle gather_full_bundle(const Map& map);
 /// All keyframes and points of one component; its first keyframe is held.
-LocalBundle gather_component_bundle(const Map& map, std::uint32_t component, const Camera& camera);
+LocalBundle gather_component_bundle(const Map& map, std::uint32_t component);
 
 /// Writes the result back and unbinds the observations that failed their gate; returns how many.
 int apply_local_bundle(const LocalBundle& bundle, const BundleReport& report, Map& map);

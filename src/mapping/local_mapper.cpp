@@ -15,6 +15,7 @@ LocalMapper::LocalMapper(const Camera& camera, const DescriptorTraits& traits,
                          const MappingOptions& options, Pause pause)
     : camera_(camera), traits_(traits), options_(options), pause_(std::move(pause)) {
   validate_options("mapping", options);
+  camera_id_ = map_.add_camera(camera_);
 }
 
 MappingReport LocalMapper::insert(const KeyframeRequest& request) {
@@ -64,7 +65,8 @@ int LocalMapper::create_points_from_depth(KeyframeId keyframe) {
   for (std::size_t i = 0; i < k.frame->size(); ++i) {
     const double depth = static_cast<double>(k.frame->depths[i]);
     if (k.points[i] != kNoId || depth <= 0.0 || depth > options_.max_point_depth) continue;
-    const Eigen::Vector3d in_camera = camera_.unproject(k.frame->pixels[i].cast<double>(), depth);
+    const Eigen::Vector3d in_camera =
+        map_.camera_of(keyframe).unproject(k.frame->pixels[i].cast<double>(), depth);
     const PointId point =
         map_.add_point(k.world_from_camera * in_camera, keyframe, static_cast<std::uint32_t>(i));
     recent_.push_back({point, keyframe});
@@ -134,8 +136,8 @@ std::vector<KeyframeId> LocalMapper::cull_keyframes(KeyframeId newest) {
 
 int LocalMapper::adjust_full_bundle(const BundleOptions& options, const MayGoOn& may_go_on,
                                     const MapChange& change) {
-  LocalBundle bundle = gather_full_bundle(map_, camera_);
-  const BundleReport result = adjust_bundle(camera_, bundle.problem, options, may_go_on);
+  LocalBundle bundle = gather_full_bundle(map_);
+  const BundleReport result = adjust_bundle(bundle.problem, options, may_go_on);
   int outliers = 0;
   if (result.usable) change([&] { outliers = apply_local_bundle(bundle, result, map_); });
   return outliers;
@@ -143,12 +145,12 @@ int LocalMapper::adjust_full_bundle(const BundleOptions& options, const MayGoOn&
 
 void LocalMapper::adjust_local_bundle(KeyframeId keyframe, MappingReport& report) {
   pause();
-  LocalBundle bundle = gather_local_bundle(map_, keyframe, camera_, options_);
+  LocalBundle bundle = gather_local_bundle(map_, keyframe, options_);
   report.bundle_keyframes = static_cast<int>(bundle.free_keyframes);
   report.bundle_points = static_cast<int>(bundle.points.size());
   report.bundle_observations = static_cast<int>(bundle.problem.observations.size());
   if (bundle.keyframes.size() < 2) return;
-  const BundleReport result = adjust_bundle(camera_, bundle.problem, options_.bundle, [this] {
+  const BundleReport result = adjust_bundle(bundle.problem, options_.bundle, [this] {
     pause();
     return true;
   });

@@ -65,7 +65,12 @@ class LocalMapper {
   /// For those who change the map between the calls above, in the same thread: loop closing.
   Map& map() { return map_; }
   /// Goes on with a map made before, in place of an empty one.
-  void set_map(Map map) { map_ = std::move(map); }
+  void set_map(Map map) {
+    map_ = std::move(map);
+    camera_id_ = map_.add_camera(camera_);
+  }
+  /// What the frames of keyframes to be inserted must say of their camera.
+  CameraId camera_id() const { return camera_id_; }
 
  private:
   struct Recent {
@@ -89,6 +94,7 @@ class LocalMapper {
   MappingOptions options_;
   Pause pause_;
   Map map_;
+  CameraId camera_id_ = 0;
   std::vector<Recent> recent_;
   KeyframeId first_of_recording_ = 0;
 };

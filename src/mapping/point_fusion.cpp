@@ -38,8 +38,9 @@ Candidates predict(const Map& map, const std::vector<PointId>& points, const Key
     if (!place) continue;
     const int row = static_cast<int>(candidates.points.size());
     map.descriptor_of(id).copyTo(candidates.descriptors.row(row));
-    candidates.predictions.push_back(
-        {row, place->pixel.cast<float>(), radius, static_cast<float>(place->depth)});
+    candidates.predictions.push_back({row, place->pixel.cast<float>(),
+                                      radius * static_cast<float>(place->stretch),
+                                      static_cast<float>(place->depth)});
     candidates.points.push_back(id);
   }
   return candidates;
@@ -79,8 +80,9 @@ std::vector<PointId> points_seen(const Map& map, KeyframeId keyframe) {
   return points;
 }
 
-int fuse_points(const std::vector<PointId>& points, KeyframeId target_id, const Camera& camera,
-                const PointFusion& fusion, Map& map) {
+int fuse_points(const std::vector<PointId>& points, KeyframeId target_id, const PointFusion& fusion,
+                Map& map) {
+  const Camera& camera = map.camera_of(target_id);
   const Keyframe& target = map.keyframe(target_id);
   std::vector<PointId> unseen;
   for (const PointId p : points) {
@@ -121,11 +123,11 @@ int LocalMapper::fuse_with_neighbours(KeyframeId keyframe) {
   int fused = 0;
   for (const KeyframeId neighbour : neighbours) {
     pause();
-    fused += fuse_points(points_seen(map_, keyframe), neighbour, camera_, fusion, map_);
+    fused += fuse_points(points_seen(map_, keyframe), neighbour, fusion, map_);
   }
   const std::vector<PointId> points =
       points_of(map_, neighbours, std::numeric_limits<std::size_t>::max());
-  return fused + fuse_points(points, keyframe, camera_, fusion, map_);
+  return fused + fuse_points(points, keyframe, fusion, map_);
 }
 
 int LocalMapper::create_points_by_triangulation(KeyframeId keyframe) {
@@ -144,15 +146,15 @@ int LocalMapper::create_points_by_triangulation(KeyframeId keyframe) {
       const auto j = static_cast<std::size_t>(theirs[static_cast<std::size_t>(m.b)]);
       const Eigen::Vector2d pixel = here.frame->pixels[i].cast<double>();
       const Eigen::Vector2d other = there.frame->pixels[j].cast<double>();
-      const auto point =
-          triangulate(camera_, here.world_from_camera, pixel, there.world_from_camera, other,
-                      options_.min_parallax * std::numbers::pi / 180.0);
+      const auto point = triangulate({map_.camera_of(keyframe), here.world_from_camera, pixel},
+                                     {map_.camera_of(c.keyframe), there.world_from_camera, other},
+                                     options_.min_parallax * std::numbers::pi / 180.0);
       if (!point) continue;
       const Eigen::Vector3d in_here = here.world_from_camera.inverse() * *point;
       const Eigen::Vector3d in_there = there.world_from_camera.inverse() * *point;
       const double most = options_.epipolar_tolerance * options_.epipolar_tolerance;
-      if (camera_.squared_error(in_here, pixel) > most) continue;
-      if (camera_.squared_error(in_there, other) > most) continue;
+      if (map_.camera_of(keyframe).squared_error(in_here, pixel) > most) continue;
+      if (map_.camera_of(c.keyframe).squared_error(in_there, other) > most) continue;
       const PointId id = map_.add_point(*point, keyframe, static_cast<std::uint32_t>(i));
       map_.add_observation(id, c.keyframe, static_cast<std::uint32_t>(j));
       map_.refresh_point(id);

@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "core/camera.h"
 #include "core/features.h"
 #include "map/map.h"
 
@@ -24,7 +23,7 @@ std::vector<PointId> points_seen(const Map& map, KeyframeId keyframe);
 /// Projects those of `points` that keyframe `target` does not see into it and binds each to the
 /// keypoint it matches, or merges it with the point that keypoint is bound to already; of two
 /// merged points the one seen by more keyframes stays. Returns how many were bound or merged.
-int fuse_points(const std::vector<PointId>& points, KeyframeId target, const Camera& camera,
-                const PointFusion& fusion, Map& map);
+int fuse_points(const std::vector<PointId>& points, KeyframeId target, const PointFusion& fusion,
+                Map& map);
 
 }  // namespace dxslam

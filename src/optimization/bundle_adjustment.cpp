@@ -22,6 +22,9 @@ void check_indices(const BundleProblem& problem) {
     require(inside(o.point, problem.points.size()),
             "bundle observation of a point that is not there");
   }
+  for (const BundleProblem::Pose& pose : problem.poses) {
+    require(problem.rig.has(pose.camera), "bundle pose of a camera that is not in the rig");
+  }
 }
 
 BundleState initial_state(const BundleProblem& problem) {
@@ -42,11 +45,6 @@ std::vector<char> held_poses(const BundleProblem& problem) {
   return held;
 }
 
-bool finite(const BundleProblem::Observation& o) {
-  return o.pixel.allFinite() && std::isfinite(o.disparity) && o.sigma > 0.0 &&
-         std::isfinite(o.sigma);
-}
-
 Eigen::Vector3d in_camera(const BundleState& state, const BundleProblem::Observation& o) {
   return state.camera_from_world[static_cast<std::size_t>(o.pose)] *
          state.points[static_cast<std::size_t>(o.point)];
@@ -57,7 +55,7 @@ std::vector<char> visible(const BundleProblem& problem, const BundleState& state
   std::vector<char> mask;
   mask.reserve(problem.observations.size());
   for (const BundleProblem::Observation& o : problem.observations) {
-    mask.push_back(finite(o) && in_camera(state, o).z() > kMinProjectionDepth ? 1 : 0);
+    mask.push_back(o.measured.is_finite() && in_camera(state, o).z() > kMinProjectionDepth ? 1 : 0);
   }
   return mask;
 }
@@ -75,7 +73,8 @@ std::vector<char> classify(const BundleStage& stage, const BundleState& state) {
   for (std::size_t i = 0; i < mask.size(); ++i) {
     if (mask[i] == 0) continue;
     const BundleProblem::Observation& o = stage.problem->observations[i];
-    const double error2 = bundle_residual(*stage.camera, o, in_camera(state, o)).squaredNorm();
+    const double error2 =
+        bundle_residual(camera_of(*stage.problem, o), o, in_camera(state, o)).squaredNorm();
     mask[i] = error2 <= bundle_gate2(o, *stage.options) ? 1 : 0;
   }
   return mask;
@@ -89,7 +88,8 @@ double robust_cost(const BundleStage& stage, const BundleState& state,
   for (std::size_t i = 0; i < mask.size(); ++i) {
     if (mask[i] == 0) continue;
     const BundleProblem::Observation& o = stage.problem->observations[i];
-    const double error2 = bundle_residual(*stage.camera, o, in_camera(state, o)).squaredNorm();
+    const double error2 =
+        bundle_residual(camera_of(*stage.problem, o), o, in_camera(state, o)).squaredNorm();
     sum += huber(error2, bundle_gate2(o, *stage.options), weight);
   }
   return 0.5 * sum;
@@ -136,15 +136,14 @@ void write_back(const BundleStage& stage, const BundleState& state, BundleProble
 
 }  // namespace
 
-BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem,
-                           const BundleOptions& options, const MayGoOn& may_go_on) {
+BundleReport adjust_bundle(BundleProblem& problem, const BundleOptions& options,
+                           const MayGoOn& may_go_on) {
   check_indices(problem);
   BundleState state = initial_state(problem);
   BundleReport report;
   report.inlier.assign(problem.observations.size(), 0);
 
   BundleStage stage;
-  stage.camera = &camera;
   stage.problem = &problem;
   stage.options = &options;
   stage.active = visible(problem, state);

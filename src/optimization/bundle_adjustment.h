@@ -5,7 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/camera.h"
+#include "core/frame.h"
+#include "core/rig.h"
 #include "core/se3.h"
 #include "optimization/may_go_on.h"
 
@@ -16,14 +17,14 @@ struct BundleProblem {
   struct Pose {
     SE3 world_from_camera;
     bool fixed = false;
+    CameraId camera = 0;  ///< in rig
   };
   struct Observation {
-    int pose = 0;            ///< index into poses
-    int point = 0;           ///< index into points
-    Eigen::Vector2d pixel;   ///< undistorted
-    double disparity = 0.0;  ///< bf / depth, pixels; 0 where the keypoint has no depth
-    double sigma = 1.0;      ///< pixels
+    int pose = 0;   ///< index into poses
+    int point = 0;  ///< index into points
+    Measurement measured;
   };
+  Rig rig;
   std::vector<Pose> poses;
   std::vector<Eigen::Vector3d> points;  ///< in world
   std::vector<Observation> observations;
@@ -66,7 +67,7 @@ struct BundleReport {
 /// Bundle adjustment over all poses not fixed and all points: robust (Huber) first, then refined
 /// without the observations that fail their gate. If no pose is fixed, pose 0 is held.
 /// Changes poses and points in place only on success. Throws ContractError on indices out of range.
-BundleReport adjust_bundle(const Camera& camera, BundleProblem& problem,
-                           const BundleOptions& options, const MayGoOn& may_go_on = {});
+BundleReport adjust_bundle(BundleProblem& problem, const BundleOptions& options,
+                           const MayGoOn& may_go_on = {});
 
 }  // namespace dxslam

@@ -57,7 +57,7 @@ TEST(BundleAdjustment, RecoversAnExactScene) {
   options.pixel_noise = 0.0;
   const BundleScene scene = make_bundle_scene(options);
   BundleProblem problem = scene.problem;
-  const BundleReport report = adjust_bundle(scene.camera, problem, patient());
+  const BundleReport report = adjust_bundle(problem, patient());
   ASSERT_TRUE(report.usable);
   EXPECT_FALSE(report.cancelled);
   EXPECT_LT(report.final_cost, 1e-6);
@@ -71,7 +71,7 @@ TEST(BundleAdjustment, RecoversAnExactScene) {
 TEST(BundleAdjustment, ImprovesANoisySceneInFewSteps) {
   const BundleScene scene = make_bundle_scene(BundleSceneOptions());
   BundleProblem problem = scene.problem;
-  const BundleReport report = adjust_bundle(scene.camera, problem, BundleOptions());
+  const BundleReport report = adjust_bundle(problem, BundleOptions());
   ASSERT_TRUE(report.usable);
   EXPECT_LE(report.iterations, 10);
   EXPECT_LT(report.final_cost, report.initial_cost);
@@ -87,7 +87,7 @@ TEST(BundleAdjustment, TellsOutliersFromInliers) {
   options.outlier_share = 0.1;
   const BundleScene scene = make_bundle_scene(options);
   BundleProblem problem = scene.problem;
-  const BundleReport report = adjust_bundle(scene.camera, problem, BundleOptions());
+  const BundleReport report = adjust_bundle(problem, BundleOptions());
   ASSERT_TRUE(report.usable);
   int kept = 0;
   int lost = 0;
@@ -107,7 +107,7 @@ TEST(BundleAdjustment, LeavesFixedPosesAlone) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem problem = scene.problem;
   problem.poses[5].fixed = true;
-  ASSERT_TRUE(adjust_bundle(scene.camera, problem, BundleOptions()).usable);
+  ASSERT_TRUE(adjust_bundle(problem, BundleOptions()).usable);
   for (const std::size_t i : {0U, 1U, 5U}) {
     EXPECT_EQ(problem.poses[i].world_from_camera.matrix(),
               scene.problem.poses[i].world_from_camera.matrix());
@@ -121,7 +121,7 @@ TEST(BundleAdjustment, HoldsTheFirstPoseIfNoneIsFixed) {
   options.fixed_poses = 0;
   const BundleScene scene = make_bundle_scene(options);
   BundleProblem problem = scene.problem;
-  ASSERT_TRUE(adjust_bundle(scene.camera, problem, patient()).usable);
+  ASSERT_TRUE(adjust_bundle(problem, patient()).usable);
   EXPECT_EQ(problem.poses[0].world_from_camera.matrix(),
             scene.problem.poses[0].world_from_camera.matrix());
   // All relative to the held one, the truth comes out.
@@ -139,7 +139,7 @@ TEST(BundleAdjustment, MovesOnlyPointsIfAllPosesAreFixed) {
   options.pixel_noise = 0.0;
   const BundleScene scene = make_bundle_scene(options);
   BundleProblem problem = scene.problem;
-  ASSERT_TRUE(adjust_bundle(scene.camera, problem, patient()).usable);
+  ASSERT_TRUE(adjust_bundle(problem, patient()).usable);
   EXPECT_EQ(worst_pose_error(scene, problem), 0.0);
   EXPECT_LT(worst_point_error(scene, problem), 1e-5);
 }
@@ -147,8 +147,7 @@ TEST(BundleAdjustment, MovesOnlyPointsIfAllPosesAreFixed) {
 TEST(BundleAdjustment, ChangesNothingWhenCancelled) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem problem = scene.problem;
-  const BundleReport report =
-      adjust_bundle(scene.camera, problem, BundleOptions(), [] { return false; });
+  const BundleReport report = adjust_bundle(problem, BundleOptions(), [] { return false; });
   EXPECT_TRUE(report.cancelled);
   EXPECT_FALSE(report.usable);
   expect_same(problem, scene.problem);
@@ -158,15 +157,15 @@ TEST(BundleAdjustment, ChangesNothingWhenCancelled) {
 TEST(BundleAdjustment, RunsToTheEndWhileStopIsNotRaised) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem problem = scene.problem;
-  EXPECT_TRUE(adjust_bundle(scene.camera, problem, BundleOptions(), [] { return true; }).usable);
+  EXPECT_TRUE(adjust_bundle(problem, BundleOptions(), [] { return true; }).usable);
 }
 
 TEST(BundleAdjustment, GivesTheSameAnswerTwice) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem a = scene.problem;
   BundleProblem b = scene.problem;
-  adjust_bundle(scene.camera, a, BundleOptions());
-  adjust_bundle(scene.camera, b, BundleOptions());
+  adjust_bundle(a, BundleOptions());
+  adjust_bundle(b, BundleOptions());
   expect_same(a, b);
 }
 
@@ -177,11 +176,11 @@ TEST(BundleAdjustment, SolvesMorePosesThanTheLocalSolverTakes) {
   options.pose_noise = 0.005;
   const BundleScene scene = make_bundle_scene(options);
   BundleProblem problem = scene.problem;
-  const BundleReport report = adjust_bundle(scene.camera, problem, BundleOptions());
+  const BundleReport report = adjust_bundle(problem, BundleOptions());
   ASSERT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, 0.2 * report.initial_cost);
   BundleProblem again = scene.problem;
-  adjust_bundle(scene.camera, again, BundleOptions());
+  adjust_bundle(again, BundleOptions());
   expect_same(problem, again);
 }
 
@@ -191,7 +190,7 @@ TEST(BundleAdjustment, PutsUpWithPointsBehindTheCamera) {
   const int seen = problem.observations[40].point;
   problem.points[static_cast<std::size_t>(seen)] =
       problem.poses[0].world_from_camera * Eigen::Vector3d(0.0, 0.0, -3.0);
-  const BundleReport report = adjust_bundle(scene.camera, problem, BundleOptions());
+  const BundleReport report = adjust_bundle(problem, BundleOptions());
   ASSERT_TRUE(report.usable);
   EXPECT_EQ(report.inlier[40], 0);
   EXPECT_LT(worst_pose_error(scene, problem), 0.05);
@@ -201,12 +200,12 @@ TEST(BundleAdjustment, SetsValuesThatAreNotFiniteAside) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem problem = scene.problem;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  problem.observations[0].pixel.x() = nan;
-  problem.observations[1].disparity = nan;
-  problem.observations[2].sigma = 0.0;
+  problem.observations[0].measured.pixel.x() = nan;
+  problem.observations[1].measured.disparity = nan;
+  problem.observations[2].measured.sigma = 0.0;
   const int seen = problem.observations[60].point;
   problem.points[static_cast<std::size_t>(seen)].z() = nan;
-  const BundleReport report = adjust_bundle(scene.camera, problem, BundleOptions());
+  const BundleReport report = adjust_bundle(problem, BundleOptions());
   ASSERT_TRUE(report.usable);
   for (const std::size_t i : {0U, 1U, 2U, 60U}) EXPECT_EQ(report.inlier[i], 0) << i;
   EXPECT_LT(worst_pose_error(scene, problem), 0.05);
@@ -218,25 +217,25 @@ TEST(BundleAdjustment, HandlesAPoseThatSeesAPointTwice) {
   const BundleScene scene = make_bundle_scene(options);
   BundleProblem problem = scene.problem;
   for (std::size_t i = 0; i < 100; ++i) problem.observations.push_back(problem.observations[3 * i]);
-  ASSERT_TRUE(adjust_bundle(scene.camera, problem, patient()).usable);
+  ASSERT_TRUE(adjust_bundle(problem, patient()).usable);
   EXPECT_LT(worst_pose_error(scene, problem), 1e-5);
 }
 
 TEST(BundleAdjustment, HandlesProblemsWithLittleOrNothingInThem) {
-  const Camera camera = make_bundle_scene(small()).camera;
   BundleProblem empty;
-  const BundleReport nothing = adjust_bundle(camera, empty, BundleOptions());
+  const BundleReport nothing = adjust_bundle(empty, BundleOptions());
   EXPECT_FALSE(nothing.cancelled);
   EXPECT_EQ(nothing.final_cost, 0.0);
 
   BundleProblem lonely;
+  lonely.rig = Rig(test_camera());
   lonely.poses.resize(2);
   lonely.points.emplace_back(0.1, 0.2, 2.0);
   BundleProblem::Observation o;
   o.pose = 1;
-  o.pixel = {330.0, 250.0};
+  o.measured.pixel = {330.0, 250.0};
   lonely.observations.push_back(o);
-  const BundleReport report = adjust_bundle(camera, lonely, BundleOptions());
+  const BundleReport report = adjust_bundle(lonely, BundleOptions());
   EXPECT_TRUE(report.usable);
   EXPECT_LE(report.final_cost, report.initial_cost);
   EXPECT_TRUE(lonely.points[0].allFinite());
@@ -246,10 +245,10 @@ TEST(BundleAdjustment, ThrowsOnIndicesOutOfRange) {
   const BundleScene scene = make_bundle_scene(small());
   BundleProblem problem = scene.problem;
   problem.observations[7].pose = 8;
-  EXPECT_THROW(adjust_bundle(scene.camera, problem, BundleOptions()), ContractError);
+  EXPECT_THROW(adjust_bundle(problem, BundleOptions()), ContractError);
   problem = scene.problem;
   problem.observations[7].point = -1;
-  EXPECT_THROW(adjust_bundle(scene.camera, problem, BundleOptions()), ContractError);
+  EXPECT_THROW(adjust_bundle(problem, BundleOptions()), ContractError);
 }
 
 TEST(BundleAdjustment, OptionsHaveValidDefaults) {

@@ -22,8 +22,8 @@ struct BundleState {
 
 /// One minimisation: which observations and poses take part, and how long it may go on.
 struct BundleStage {
-  const Camera* camera = nullptr;
-  const BundleProblem* problem = nullptr;  ///< observations only; poses and points are in the state
+  /// Observations and cameras only; poses and points are in the state.
+  const BundleProblem* problem = nullptr;
   const BundleOptions* options = nullptr;
   std::vector<char> active;  ///< one per observation
   std::vector<char> held;    ///< one per pose
@@ -37,22 +37,22 @@ struct BundleStage {
       0.25;  ///< of pairs of poses with common points; more are solved densely
 };
 
-inline bool has_depth(const BundleProblem::Observation& o) { return o.disparity > 0.0; }
-
 /// Squared gate, which is the squared width of the Huber kernel, too; in units of sigma.
 inline double bundle_gate2(const BundleProblem::Observation& o, const BundleOptions& options) {
-  return has_depth(o) ? options.chi2_depth : options.chi2_pixel;
+  return o.measured.has_disparity() ? options.chi2_depth : options.chi2_pixel;
 }
 
-/// (u, v, u - disparity) minus measurement, over sigma; the last is 0 without depth. A point with
-/// no projection counts as an image width off.
+/// The camera that took an observation.
+inline const Camera& camera_of(const BundleProblem& problem, const BundleProblem::Observation& o) {
+  return problem.rig.cameras()[problem.poses[static_cast<std::size_t>(o.pose)].camera];
+}
+
+/// stereo_residual over sigma. A point with no projection counts as an image width off.
 inline Eigen::Vector3d bundle_residual(const Camera& camera, const BundleProblem::Observation& o,
                                        const Eigen::Vector3d& in_camera) {
-  if (!(in_camera.z() > kMinProjectionDepth)) return {camera.width / o.sigma, 0.0, 0.0};
-  const Eigen::Vector3d measured(o.pixel.x(), o.pixel.y(), o.pixel.x() - o.disparity);
-  Eigen::Vector3d r = (project_stereo(camera, in_camera) - measured) / o.sigma;
-  if (!has_depth(o)) r.z() = 0.0;
-  return r;
+  const double sigma = o.measured.sigma;
+  if (!(in_camera.z() > kMinProjectionDepth)) return {camera.width / sigma, 0.0, 0.0};
+  return stereo_residual(camera, o.measured, in_camera) / sigma;
 }
 
 /// Minimises in one thread; bit-identical over repeats.

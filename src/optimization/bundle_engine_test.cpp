@@ -41,7 +41,6 @@ class BundleEngineTest : public testing::TestWithParam<std::tuple<bool, int>> {
       stage_.held.push_back(pose.fixed ? 1 : 0);
     }
     start_.points = scene_.problem.points;
-    stage_.camera = &scene_.camera;
     stage_.problem = &scene_.problem;
     stage_.options = &options_;
     stage_.active.assign(scene_.problem.observations.size(), 1);
@@ -277,16 +276,18 @@ TEST(BundleResidual, IsTheProjectionMinusTheMeasurement) {
   const BundleScene scene = make_bundle_scene(BundleSceneOptions());
   for (std::size_t i = 0; i < 60; ++i) {
     BundleProblem::Observation o = scene.problem.observations[i];
-    o.sigma = 0.7;
+    o.measured.sigma = 0.7;
     const Eigen::Vector3d p =
         scene.true_world_from_camera[static_cast<std::size_t>(o.pose)].inverse() *
         scene.true_points[static_cast<std::size_t>(o.point)];
     const Camera& c = scene.camera;
     const double u = c.fx * p.x() / p.z() + c.cx;
     const double v = c.fy * p.y() / p.z() + c.cy;
-    const double disparity = has_depth(o) ? c.bf() / p.z() - o.disparity : u - o.pixel.x();
-    const Eigen::Vector3d expected(u - o.pixel.x(), v - o.pixel.y(), u - o.pixel.x() - disparity);
-    EXPECT_LT((bundle_residual(c, o, p) - expected / o.sigma).norm(), 1e-10);
+    const double disparity = o.measured.has_disparity() ? c.bf() / p.z() - o.measured.disparity
+                                                        : u - o.measured.pixel.x();
+    const Eigen::Vector3d expected(u - o.measured.pixel.x(), v - o.measured.pixel.y(),
+                                   u - o.measured.pixel.x() - disparity);
+    EXPECT_LT((bundle_residual(c, o, p) - expected / o.measured.sigma).norm(), 1e-10);
   }
 }
 

@@ -42,6 +42,7 @@ class BundleSceneMaker {
   BundleScene make() {
     BundleScene scene;
     scene.camera = test_camera();
+    scene.problem.rig = Rig(scene.camera);
     add_poses(scene);
     for (int i = 0; i < options_.points; ++i) add_point(scene, i);
     return scene;
@@ -89,14 +90,14 @@ class BundleSceneMaker {
     BundleProblem::Observation o;
     o.pose = pose;
     o.point = point;
-    o.sigma = options_.pixel_noise > 0.0 ? options_.pixel_noise : 1.0;
-    o.pixel = scene.camera.project(p) +
-              options_.pixel_noise * Eigen::Vector2d(random_.normal(), random_.normal());
+    o.measured.sigma = options_.pixel_noise > 0.0 ? options_.pixel_noise : 1.0;
+    o.measured.pixel = scene.camera.project(p) +
+                       options_.pixel_noise * Eigen::Vector2d(random_.normal(), random_.normal());
     if (random_.uniform(0.0, 1.0) < options_.depth_share) {
-      o.disparity = scene.camera.bf() / p.z() + options_.pixel_noise * random_.normal();
+      o.measured.disparity = scene.camera.bf() / p.z() + options_.pixel_noise * random_.normal();
     }
     const bool outlier = random_.uniform(0.0, 1.0) < options_.outlier_share;
-    if (outlier) o.pixel = {random_.uniform(0.0, 639.0), random_.uniform(0.0, 479.0)};
+    if (outlier) o.measured.pixel = {random_.uniform(0.0, 639.0), random_.uniform(0.0, 479.0)};
     scene.problem.observations.push_back(o);
     scene.outlier.push_back(outlier ? 1 : 0);
     return true;

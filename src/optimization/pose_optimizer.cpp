@@ -30,20 +30,15 @@ class Problem {
       : camera_(camera), observations_(observations), options_(options) {}
 
   static bool usable(const PoseObservation& o) {
-    return o.point_in_world.allFinite() && o.pixel.allFinite() && std::isfinite(o.disparity) &&
-           o.sigma > 0.0 && std::isfinite(o.sigma);
+    return o.point_in_world.allFinite() && o.measured.is_finite();
   }
 
   double gate(const PoseObservation& o) const {
-    return o.disparity > 0.0 ? options_.chi2_depth : options_.chi2_pixel;
+    return o.measured.has_disparity() ? options_.chi2_depth : options_.chi2_pixel;
   }
 
-  /// Residual (u, v, u - disparity) in pixels; the last is 0 without depth.
   Eigen::Vector3d residual(const PoseObservation& o, const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d measured(o.pixel.x(), o.pixel.y(), o.pixel.x() - o.disparity);
-    Eigen::Vector3d r = project_stereo(camera_, point) - measured;
-    if (!(o.disparity > 0.0)) r.z() = 0.0;
-    return r;
+    return stereo_residual(camera_, o.measured, point);
   }
 
   /// Builds the normal equations of the observations whose mask is set.
@@ -66,8 +61,9 @@ class Problem {
     for (std::size_t i = 0; i < observations_.size(); ++i) {
       const PoseObservation& o = observations_[i];
       const Eigen::Vector3d point = camera_from_world * o.point_in_world;
-      const bool good = usable(o) && point.z() > kMinProjectionDepth &&
-                        residual(o, point).squaredNorm() <= gate(o) * o.sigma * o.sigma;
+      const bool good =
+          usable(o) && point.z() > kMinProjectionDepth &&
+          residual(o, point).squaredNorm() <= gate(o) * o.measured.sigma * o.measured.sigma;
       mask[i] = good ? 1 : 0;
       inliers += mask[i];
     }
@@ -94,7 +90,7 @@ class Problem {
   void add(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation,
            const PoseObservation& o, bool robust, System& system) const {
     const Eigen::Vector3d point = rotation * o.point_in_world + translation;
-    const double information = 1.0 / (o.sigma * o.sigma);
+    const double information = 1.0 / (o.measured.sigma * o.measured.sigma);
     const double delta2 = gate(o);
     if (!(point.z() > kMinProjectionDepth)) {
       // No projection: a constant cost, as of a residual across the image, and no pull.
@@ -114,7 +110,7 @@ class Problem {
     }
     Eigen::Matrix3d by_point;
     Eigen::Vector3d pull;
-    point_information(camera_, point, r, weight, o.disparity > 0.0, by_point, pull);
+    point_information(camera_, point, r, weight, o.measured.has_disparity(), by_point, pull);
     add_left_perturbation(by_point, pull, point, system.hessian, system.gradient);
   }
 

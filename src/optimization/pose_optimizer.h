@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/frame.h"
 #include "core/se3.h"
 
 namespace dxslam {
@@ -13,9 +14,7 @@ namespace dxslam {
 /// A known point seen in an image.
 struct PoseObservation {
   Eigen::Vector3d point_in_world;
-  Eigen::Vector2d pixel;   ///< undistorted
-  double disparity = 0.0;  ///< bf / depth, pixels; 0 where the keypoint has no depth
-  double sigma = 1.0;      ///< standard deviation of pixel and disparity, pixels
+  Measurement measured;
 };
 
 struct PoseOptimizerOptions {

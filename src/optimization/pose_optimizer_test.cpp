@@ -30,13 +30,14 @@ PoseScene make_scene(SampleSource& source, int n, double outlier_share, double n
     const double depth = source.uniform(0.5, 5.0);
     PoseObservation o;
     o.point_in_world = scene.truth * camera.unproject(pixel, depth);
-    o.sigma = source.uniform(0.7, 1.5);
-    const double dx = noise * o.sigma * source.normal();
-    const double dy = noise * o.sigma * source.normal();
-    o.pixel = pixel + Eigen::Vector2d(dx, dy);
-    if (i % 3 != 0) o.disparity = camera.bf() / depth + noise * o.sigma * source.normal();
+    o.measured.sigma = source.uniform(0.7, 1.5);
+    const double dx = noise * o.measured.sigma * source.normal();
+    const double dy = noise * o.measured.sigma * source.normal();
+    o.measured.pixel = pixel + Eigen::Vector2d(dx, dy);
+    if (i % 3 != 0)
+      o.measured.disparity = camera.bf() / depth + noise * o.measured.sigma * source.normal();
     const bool outlier = source.uniform(0.0, 1.0) < outlier_share;
-    if (outlier) o.pixel = random_pixel(source);
+    if (outlier) o.measured.pixel = random_pixel(source);
     scene.observations.push_back(o);
     scene.outlier.push_back(outlier ? 1 : 0);
   }
@@ -62,9 +63,10 @@ SE3 oracle(const SE3& start, const std::vector<PoseObservation>& observations,
       const Eigen::Vector3d p = pose * o.point_in_world;
       const double u = camera.fx * p.x() / p.z() + camera.cx;
       const double v = camera.fy * p.y() / p.z() + camera.cy;
-      Eigen::Vector3d part(u - o.pixel.x(), v - o.pixel.y(), 0.0);
-      if (o.disparity > 0.0) part.z() = u - camera.bf() / p.z() - o.pixel.x() + o.disparity;
-      part /= o.sigma;
+      Eigen::Vector3d part(u - o.measured.pixel.x(), v - o.measured.pixel.y(), 0.0);
+      if (o.measured.has_disparity())
+        part.z() = u - camera.bf() / p.z() - o.measured.pixel.x() + o.measured.disparity;
+      part /= o.measured.sigma;
       const double scale = huber > 0.0 ? huber_scale(part.squaredNorm(), huber * huber) : 1.0;
       r.segment<3>(3 * static_cast<Eigen::Index>(i)) = scale * part;
     }
@@ -159,10 +161,11 @@ TEST(PoseOptimizer, InformationIsTheInverseCovarianceOfThePose) {
   for (int i = 0; i < kRounds; ++i) {
     std::vector<PoseObservation> noisy = clean.observations;
     for (PoseObservation& o : noisy) {
-      const double nu = o.sigma * source.normal();
-      o.pixel += Eigen::Vector2d(nu, o.sigma * source.normal());
+      const double nu = o.measured.sigma * source.normal();
+      o.measured.pixel += Eigen::Vector2d(nu, o.measured.sigma * source.normal());
       // Disparity as measured from u: the noise of the right column is independent of u.
-      if (o.disparity > 0.0) o.disparity += nu - o.sigma * source.normal();
+      if (o.measured.has_disparity())
+        o.measured.disparity += nu - o.measured.sigma * source.normal();
     }
     const PoseReport report = optimize_pose(test_camera(), clean.truth, noisy, options);
     ASSERT_TRUE(report.success);
@@ -179,9 +182,9 @@ TEST(PoseOptimizer, UsesDepthWhereThereIsOne) {
   SampleSource source(6);
   PoseScene scene = make_scene(source, 8, 0.0, 0.0);
   for (PoseObservation& o : scene.observations) {
-    o.disparity = test_camera().bf() / (scene.truth.inverse() * o.point_in_world).z();
+    o.measured.disparity = test_camera().bf() / (scene.truth.inverse() * o.point_in_world).z();
   }
-  scene.observations[2].disparity *= 3.0;  // right pixel, wrong depth
+  scene.observations[2].measured.disparity *= 3.0;  // right pixel, wrong depth
   const PoseReport report =
       optimize_pose(test_camera(), nearby(source, scene.truth, 0.02), scene.observations, {});
   ASSERT_TRUE(report.success);
@@ -194,8 +197,8 @@ TEST(PoseOptimizer, CountsPointsBehindTheCameraAsOutliers) {
   PoseScene scene = make_scene(source, 50, 0.0, 0.5);
   PoseObservation& o = scene.observations[10];
   o.point_in_world = scene.truth * Eigen::Vector3d(-0.1, 0.1, -1.0);
-  o.pixel = test_camera().project({-0.1, 0.1, -1.0});
-  o.disparity = 0.0;
+  o.measured.pixel = test_camera().project({-0.1, 0.1, -1.0});
+  o.measured.disparity = 0.0;
   const PoseReport report =
       optimize_pose(test_camera(), nearby(source, scene.truth, 0.03), scene.observations, {});
   ASSERT_TRUE(report.success);
@@ -207,11 +210,11 @@ TEST(PoseOptimizer, SetsValuesThatAreNotFiniteAside) {
   SampleSource source(8);
   PoseScene scene = make_scene(source, 50, 0.0, 0.5);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  scene.observations[0].pixel.x() = nan;
+  scene.observations[0].measured.pixel.x() = nan;
   scene.observations[1].point_in_world.z() = std::numeric_limits<double>::infinity();
-  scene.observations[2].disparity = nan;
-  scene.observations[3].sigma = 0.0;
-  scene.observations[4].sigma = nan;
+  scene.observations[2].measured.disparity = nan;
+  scene.observations[3].measured.sigma = 0.0;
+  scene.observations[4].measured.sigma = nan;
   const PoseReport report =
       optimize_pose(test_camera(), nearby(source, scene.truth, 0.03), scene.observations, {});
   ASSERT_TRUE(report.success);

@@ -171,7 +171,8 @@ class SchurSolver {
         const Link& link = links_[static_cast<std::size_t>(k)];
         const BundleProblem::Observation& o = observation(link);
         const Eigen::Vector3d p = in_camera(trial_, link, point);
-        sum += kernel(o, bundle_residual(*stage_.camera, o, p).squaredNorm(), weight);
+        sum +=
+            kernel(o, bundle_residual(camera_of(*stage_.problem, o), o, p).squaredNorm(), weight);
       }
     }
     return 0.5 * sum;
@@ -304,7 +305,8 @@ class SchurSolver {
     const BundleProblem::Observation& o = observation(link);
     const Eigen::Vector3d p =
         in_camera(state_, link, state_.points[static_cast<std::size_t>(block.point)]);
-    const Eigen::Vector3d residual = bundle_residual(*stage_.camera, o, p);
+    const Camera& camera = camera_of(*stage_.problem, o);
+    const Eigen::Vector3d residual = bundle_residual(camera, o, p);
     double weight = 1.0;
     const double cost = kernel(o, residual.squaredNorm(), weight);
 
@@ -312,8 +314,9 @@ class SchurSolver {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d pull = Eigen::Vector3d::Zero();
     if (p.z() > kMinProjectionDepth) {
-      point_information(*stage_.camera, p, o.sigma * residual, weight / (o.sigma * o.sigma),
-                        has_depth(o), information, pull);
+      const double sigma = o.measured.sigma;
+      point_information(camera, p, sigma * residual, weight / (sigma * sigma),
+                        o.measured.has_disparity(), information, pull);
     }
     const Eigen::Matrix3d& rotation = rotations_[static_cast<std::size_t>(link.pose)];
     const Eigen::Matrix3d turned = information * rotation;

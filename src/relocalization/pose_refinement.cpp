@@ -17,12 +17,8 @@ namespace {
 PoseObservation observe(const Camera& camera, const Map& map, const Frame& frame,
                         const PointMatch& match, const SE3& camera_from_world) {
   const std::size_t i = static_cast<std::size_t>(match.keypoint);
-  PoseObservation o;
-  o.point_in_world = map.point(match.id).position;
-  o.pixel = frame.pixels[i].cast<double>();
-  o.sigma = static_cast<double>(frame.sigmas[i]);
-  o.disparity = agreeing_disparity(frame, i, camera, (camera_from_world * o.point_in_world).z());
-  return o;
+  const Eigen::Vector3d& position = map.point(match.id).position;
+  return {position, measurement_of(frame, i, camera, (camera_from_world * position).z())};
 }
 
 }  // namespace
@@ -131,7 +127,8 @@ std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& poi
     in_view.push_back(place->pixel.cast<float>());
     if (std::binary_search(matched.begin(), matched.end(), id)) continue;
     const int row = static_cast<int>(ids.size());
-    predictions.push_back({row, in_view.back(), window, static_cast<float>(place->depth)});
+    predictions.push_back({row, in_view.back(), window * static_cast<float>(place->stretch),
+                           static_cast<float>(place->depth)});
     ids.push_back(id);
     std::memcpy(descriptors.ptr(row), map_.descriptor_of(id).ptr(),
                 descriptors.elemSize() * static_cast<std::size_t>(descriptors.cols));

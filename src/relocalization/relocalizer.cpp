@@ -121,10 +121,12 @@ class GroupAttempt {
       const std::size_t k = static_cast<std::size_t>(m.keypoint);
       const Eigen::Vector3d p =
           camera_from_world * points.positions[static_cast<std::size_t>(m.point)];
-      if (camera_.squared_error(p, frame_.pixels[k].cast<double>()) > threshold * threshold)
-        continue;
+      const Eigen::Vector2d pixel = frame_.pixels[k].cast<double>();
+      const double within = threshold * camera_.stretch(pixel);
+      if (camera_.squared_error(p, pixel) > within * within) continue;
       const double depth = static_cast<double>(frame_.depths[k]);
-      if (depth > 0.0 && std::abs(p.z() - depth) > options_.depth_tolerance * p.z()) continue;
+      if (frame_.has_depth(k) && std::abs(p.z() - depth) > options_.depth_tolerance * p.z())
+        continue;
       ++matched;
     }
     return matched;

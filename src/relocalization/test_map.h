@@ -27,6 +27,7 @@ inline FramePtr with_global(const FramePtr& frame, std::vector<float> global) {
 /// component whose world is moved by `world_from_scene`. Their places start at `place`.
 inline std::vector<KeyframeId> add_scene(PointScene& scene, int count, double place,
                                          const SE3& world_from_scene, Map& map) {
+  map.add_camera(scene.camera());
   std::vector<KeyframeId> ids;
   std::map<int, PointId> point_of;
   for (int i = 0; i < count; ++i) {

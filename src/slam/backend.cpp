@@ -26,7 +26,7 @@ Backend::Backend(const Camera& camera, FeatureExtractor& extractor, const System
       extractor_(extractor),
       mapper_(camera, extractor.traits(), options.mapping, pause),
       search_(make_search(options, extractor)),
-      closer_(camera, extractor.traits(), options.loop_closing, options.deterministic, pause),
+      closer_(extractor.traits(), options.loop_closing, options.deterministic, pause),
       relocalizer_(camera, extractor.traits(), options.relocalization),
       consensus_(options.relocalization.consensus) {}
 
@@ -45,6 +45,7 @@ std::vector<float> Backend::global_of(const Frame& frame) {
 
 FramePtr Backend::keyframe_of(const Frame& frame) {
   auto copy = std::make_shared<Frame>(frame);
+  copy->camera = mapper_.camera_id();
   copy->global = global_of(frame);
   copy->encoder.release();
   return copy;

@@ -92,7 +92,7 @@ TEST(Renderer, LightIsInterpolatedAcrossTheSurface) {
 
 TEST(Renderer, RefusesADistortedCamera) {
   Camera camera = small_camera();
-  camera.k1 = 0.1;
+  camera.lens.parameters[0] = 0.1;
   EXPECT_THROW(render(world_of({}), {}, camera, SE3(), {}), ContractError);
 }
 

@@ -6,8 +6,7 @@
 
 namespace dxslam {
 
-std::vector<KnownPoint> known_points(const LastFrame& last, const LocalMap& local,
-                                     const Camera& camera) {
+std::vector<KnownPoint> known_points(const LastFrame& last, const LocalMap& local) {
   std::vector<KnownPoint> known;
   known.reserve(last.frame->size());
   for (std::size_t i = 0; i < last.frame->size(); ++i) {
@@ -16,7 +15,7 @@ std::vector<KnownPoint> known_points(const LastFrame& last, const LocalMap& loca
     if (index >= 0) {
       known.push_back({keypoint, last.points[i], local.positions[static_cast<std::size_t>(index)]});
     } else if (last.frame->has_depth(i)) {
-      const Eigen::Vector3d in_camera = camera.unproject(
+      const Eigen::Vector3d in_camera = last.camera.unproject(
           last.frame->pixels[i].cast<double>(), static_cast<double>(last.frame->depths[i]));
       known.push_back({keypoint, kNoId, last.world_from_camera * in_camera});
     }
@@ -31,8 +30,7 @@ std::vector<PoseObservation> pose_observations(const Frame& frame,
   observations.reserve(known.size());
   for (const KnownPoint& k : known) {
     const std::size_t i = static_cast<std::size_t>(k.keypoint);
-    observations.push_back({k.position, frame.pixels[i].cast<double>(),
-                            disparity_of(frame, i, camera), static_cast<double>(frame.sigmas[i])});
+    observations.push_back({k.position, measurement_of(frame, i, camera)});
   }
   return observations;
 }
@@ -43,10 +41,10 @@ int drop_wrong_depths(const Camera& camera, const PoseReport& report,
   int dropped = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     PoseObservation& o = observations[i];
-    if (report.inlier[i] != 0 || o.disparity <= 0.0) continue;
+    if (report.inlier[i] != 0 || !o.measured.has_disparity()) continue;
     const double z = (camera_from_world * o.point_in_world).z();
-    if (disparity_agrees(camera, o.disparity, z, o.sigma)) continue;
-    o.disparity = 0.0;
+    if (o.measured.disparity_agrees(camera, z)) continue;
+    o.measured.drop_disparity();
     ++dropped;
   }
   return dropped;
@@ -57,7 +55,8 @@ int count_near(const Camera& camera, const Frame& frame, const SE3& world_from_c
   const SE3 camera_from_world = world_from_camera.inverse();
   return static_cast<int>(std::count_if(known.begin(), known.end(), [&](const KnownPoint& k) {
     const Eigen::Vector2d pixel = frame.pixels[static_cast<std::size_t>(k.keypoint)].cast<double>();
-    return camera.squared_error(camera_from_world * k.position, pixel) <= radius * radius;
+    const double within = radius * camera.stretch(pixel);
+    return camera.squared_error(camera_from_world * k.position, pixel) <= within * within;
   }));
 }
 

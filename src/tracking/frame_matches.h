@@ -23,12 +23,12 @@ struct LastFrame {
   FramePtr frame;
   SE3 world_from_camera;
   std::vector<PointId> points;  ///< one per keypoint; kNoId: none
+  Camera camera;
 };
 
 /// Known points of a frame: the map point of each keypoint where it has one in the local map,
 /// else the keypoint's own depth. One per keypoint that has either, by rising keypoint.
-std::vector<KnownPoint> known_points(const LastFrame& last, const LocalMap& local,
-                                     const Camera& camera);
+std::vector<KnownPoint> known_points(const LastFrame& last, const LocalMap& local);
 
 /// Observations of `frame` for the pose optimiser.
 std::vector<PoseObservation> pose_observations(const Frame& frame,

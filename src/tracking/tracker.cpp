@@ -77,7 +77,8 @@ void Tracker::follow(const LocalMap& next) {
     last_.world_from_camera = *after * before->inverse() * last_.world_from_camera;
   } else if (next.component != local_->component) {
     // Where the last frame is in this world is not known; where its reference is, is.
-    last_ = {next.reference_frame, next.world_from_reference, next.reference_points};
+    last_ = {next.reference_frame, next.world_from_reference, next.reference_points,
+             next.reference_camera};
     last_velocity_.reset();
   }
 }
@@ -187,7 +188,7 @@ Tracker::OptionalEstimate Tracker::track_last_frame(const Frame& frame, const Ke
   const int all = std::numeric_limits<int>::max();
   if (OptionalEstimate estimate = track_by_descriptors(frame, last_, all)) return estimate;
   const LastFrame reference{local_->reference_frame, local_->world_from_reference,
-                            local_->reference_points};
+                            local_->reference_points, local_->reference_camera};
   if (OptionalEstimate estimate = track_by_descriptors(frame, reference, all)) return estimate;
   return track_whole_local_map(frame);
 }
@@ -219,8 +220,9 @@ std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const Keypo
     const Eigen::Vector3d p = camera_from_world * last_known[i].position;
     const std::optional<Eigen::Vector2d> pixel = camera_.project_into_view(p);
     if (!pixel) continue;
-    predictions.push_back(
-        {last_known[i].keypoint, pixel->cast<float>(), scaled(radius), static_cast<float>(p.z())});
+    predictions.push_back({last_known[i].keypoint, pixel->cast<float>(),
+                           scaled(radius) * static_cast<float>(camera_.stretch(*pixel)),
+                           static_cast<float>(p.z())});
     source.push_back(i);
   }
   std::vector<KnownPoint> known;
@@ -235,7 +237,7 @@ std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const Keypo
 
 Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,
                                                        SE3 predicted, double fair) const {
-  const std::vector<KnownPoint> last_known = known_points(last_, *local_, camera_);
+  const std::vector<KnownPoint> last_known = known_points(last_, *local_);
   struct Search {
     double radius;
     double enough;  // share that ends the search
@@ -262,7 +264,7 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
 
 Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame, const LastFrame& source,
                                                         int keypoints) const {
-  const std::vector<KnownPoint> source_known = known_points(source, *local_, camera_);
+  const std::vector<KnownPoint> source_known = known_points(source, *local_);
   std::vector<int> known_of(source.frame->size(), -1);
   for (std::size_t i = 0; i < source_known.size(); ++i) {
     known_of[static_cast<std::size_t>(source_known[i].keypoint)] = static_cast<int>(i);
@@ -342,7 +344,8 @@ std::vector<PixelPrediction> Tracker::predict_local_points(const SE3& world_from
         predictor.place_of(local_->positions[i], local_->normals[i], local_->distances[i]);
     if (!place) continue;
     predictions.push_back({static_cast<int>(i), place->pixel.cast<float>(),
-                           scaled(options_.local_radius), static_cast<float>(place->depth)});
+                           scaled(options_.local_radius) * static_cast<float>(place->stretch),
+                           static_cast<float>(place->depth)});
   }
   return predictions;
 }
@@ -448,7 +451,7 @@ void Tracker::remember(const FramePtr& frame, const OptionalEstimate& estimate) 
     return;
   }
   last_velocity_ = velocity_at(*frame, estimate->world_from_camera);
-  last_ = {frame, estimate->world_from_camera, points_by_keypoint(*frame, *estimate)};
+  last_ = {frame, estimate->world_from_camera, points_by_keypoint(*frame, *estimate), camera_};
 }
 
 float Tracker::scaled(double pixels_at_640) const {

@@ -16,6 +16,7 @@ namespace {
 
 // The first keyframe of a map, at the origin; all its keypoints with depth are points.
 void start_map(Map& map, const FramePtr& frame, const Camera& camera, Tracker& tracker) {
+  map.add_camera(camera);
   const KeyframeId id = map.add_keyframe(frame, SE3(), kNoId);
   for (std::size_t i = 0; i < frame->size(); ++i) {
     if (!frame->has_depth(i)) continue;
@@ -125,6 +126,7 @@ TEST_F(TrackerTest, FollowsIntoAnotherWorldWithoutItsReference) {
   tracker_.track(scene_.frame(1, PointScene::pose(0.01)), request_);
   const SE3 shift(so3_exp({0.0, 0.5, 0.0}), Eigen::Vector3d(5.0, 0.0, 0.0));
   Map joined;
+  joined.add_camera(scene_.camera());
   joined.add_keyframe(scene_.frame(7, SE3()), SE3(), kNoId);  // the id that the reference had
   const FramePtr frame = scene_.frame(0, SE3());
   const KeyframeId id = joined.add_keyframe(frame, shift, kNoId);

@@ -89,8 +89,8 @@ StoredMap BaseMaps::walk(const Recording& recording, const std::vector<int>& num
   system->finish();
   require(system->map().keyframe_count() >= 3, "the made-up recording must make a map");
   const std::string path = folder_ + "/walk";
-  apps::save_system_map(path, apps::map_header(recording.camera(), system->extractor()),
-                        system->map(), system->backend().closed_loops(), {});
+  apps::save_system_map(path, apps::map_header(system->extractor()), system->map(),
+                        system->backend().closed_loops(), {});
   return load_map(path);
 }
 

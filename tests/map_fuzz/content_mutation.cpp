@@ -49,11 +49,7 @@ void spoil_camera(Camera& c, Chance& chance) {
                             &c.fy,
                             &c.cx,
                             &c.cy,
-                            &c.k1,
-                            &c.k2,
-                            &c.p1,
-                            &c.p2,
-                            &c.k3,
+                            &c.lens.parameters[chance.below(c.lens.parameters.size())],
                             &c.fps,
                             &c.depth_factor,
                             &c.depth_baseline,
@@ -68,7 +64,27 @@ void spoil_camera(Camera& c, Chance& chance) {
     c.height = static_cast<int>(chance.id(static_cast<std::uint32_t>(c.height), 500));
 }
 
-void spoil_header(MapHeader& header, Chance& chance) {
+// One camera, or which of them took a frame.
+void spoil_rig(MapParts& parts, Chance& chance) {
+  std::vector<Camera> cameras = parts.rig.cameras();
+  const std::size_t which = chance.below(cameras.size());
+  Camera spoilt = cameras[which];
+  if (chance.one_in(4)) spoilt.lens.model = lens_models()[chance.below(lens_models().size())];
+  spoil_camera(spoilt, chance);
+  if (chance.one_in(2)) {
+    cameras[which] = spoilt;
+  } else {
+    cameras.push_back(spoilt);
+    const std::size_t k = chance.below(parts.keyframes.size());
+    auto frame = std::make_shared<Frame>(*parts.keyframes[k].frame);
+    frame->camera = static_cast<CameraId>(chance.below(cameras.size() + 1));
+    parts.keyframes[k].frame = std::move(frame);
+  }
+  parts.rig = Rig();
+  for (const Camera& camera : cameras) parts.rig.add(camera);
+}
+
+void spoil_header(MapHeader& header, MapParts& parts, Chance& chance) {
   DescriptorTraits& traits = header.traits;
   switch (chance.below(5)) {
     case 0:
@@ -84,7 +100,7 @@ void spoil_header(MapHeader& header, Chance& chance) {
       header.model_hash.assign(chance.below(80), 'a');
       break;
     default:
-      spoil_camera(header.camera, chance);
+      spoil_rig(parts, chance);
   }
 }
 
@@ -319,7 +335,7 @@ void spoil_content(MapSnapshot& snapshot, Chance& chance) {
   MapParts& parts = snapshot.parts;
   switch (chance.below(8)) {
     case 0:
-      spoil_header(snapshot.header, chance);
+      spoil_header(snapshot.header, snapshot.parts, chance);
       break;
     case 1:
       spoil_loops(snapshot, chance);

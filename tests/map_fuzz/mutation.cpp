@@ -134,7 +134,8 @@ std::string without_checks(const MapSnapshot& snapshot, bool exact) {
   const DescriptorTraits& traits = snapshot.header.traits;
   const DescriptorCoding floats = exact ? DescriptorCoding::kFloat32 : DescriptorCoding::kInt8;
   SectionWriter file(0);
-  write_header(snapshot.header, file);
+  write_header(snapshot.header, snapshot.parts.rig, file);
+  write_cameras(snapshot.parts.rig, file);
   write_keyframes(snapshot.parts, file);
   write_keypoints(snapshot.parts, traits, traits.binary ? DescriptorCoding::kBytes : floats, file);
   // Those of another length than the header says cannot be written.

@@ -109,9 +109,9 @@ class Trial {
   std::unique_ptr<System> run_system(const std::string& file, const std::string& mode,
                                      const std::vector<int>& frames) const {
     auto system = make_system(recording_, mode, !thorough_);
-    const MapHeader current = apps::map_header(recording_.camera(), system->extractor());
-    const bool taken = unless_refused(
-        [&] { apps::hand_over(load(file), *system, "the map", current, mode == "slam"); });
+    const MapHeader current = apps::map_header(system->extractor());
+    const bool taken =
+        unless_refused([&] { apps::hand_over(load(file), *system, "the map", current); });
     if (!taken) return nullptr;
     must_work(mode.c_str(), [&] {
       for (const RgbdImage& image : images_of(recording_, frames)) system->process(image);
@@ -132,7 +132,7 @@ class Trial {
     report_.tracked = tracked_any(*system);
     report_.joined = system->components().size() < components;
     save_and_load(
-        take_snapshot(apps::map_header(recording_.camera(), system->extractor()), system->map(),
+        take_snapshot(apps::map_header(system->extractor()), system->map(),
                       apps::stored_loops(system->map(), system->backend().closed_loops())));
   }
 

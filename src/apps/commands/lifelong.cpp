@@ -101,8 +101,7 @@ Recordings open_all(const LifelongArguments& arguments) {
     require_depth(*all.back());
     const Camera& first = all.front()->camera();
     const Camera& camera = all.back()->camera();
-    if (camera.width != first.width || camera.height != first.height || camera.fx != first.fx ||
-        camera.fy != first.fy || camera.cx != first.cx || camera.cy != first.cy) {
+    if (camera != first) {
       throw InputError(fmt::format("{}: has another camera than {}, expected one camera for all",
                                    folder, arguments.sequences.front()));
     }

@@ -65,7 +65,8 @@ Json describe_map(const std::string& path, const StoredMap& stored, const MapSta
   report["file"] = path;
   report["bytes"] = std::filesystem::file_size(path);
   report["sections"] = sections_table(path);
-  report["camera"] = camera_json(stored.header.camera);
+  report["cameras"] = Json::array();
+  for (const Camera& c : stored.map.rig().cameras()) report["cameras"].push_back(camera_json(c));
   report["features"] = stored.header.extractor;
   report["model_sha256"] = stored.header.model_hash;
   report["descriptors"] = {{"kind", traits.binary ? "binary" : "float"},
@@ -87,14 +88,16 @@ Json describe_map(const std::string& path, const StoredMap& stored, const MapSta
 
 void print_info(const StoredMap& stored, const MapStatistics& s, double bytes) {
   const MapHeader& header = stored.header;
-  const Camera& c = header.camera;
   const double keyframes =
       static_cast<double>(std::max<std::size_t>(1, stored.map.keyframe_count()));
   print("features      {}, {} {} per keypoint{}\n", header.extractor, header.traits.dimension,
         header.traits.binary ? "bytes" : "floats",
         header.model_hash.empty() ? "" : ", weights " + header.model_hash.substr(0, 12));
-  print("camera        {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}\n", c.width, c.height, c.fx,
-        c.fy, c.cx, c.cy);
+  for (const Camera& c : stored.map.rig().cameras()) {
+    print("camera        {}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}{}\n", c.width, c.height,
+          c.fx, c.fy, c.cx, c.cy,
+          c.has_distortion() ? fmt::format(", lens {}", c.lens.model->name) : "");
+  }
   print("size          {:.1f} MiB, {:.1f} KiB per keyframe\n", bytes / kMebibyte,
         bytes / 1024.0 / keyframes);
   print("keyframes     {}, {} of them with a global descriptor\n", stored.map.keyframe_count(),

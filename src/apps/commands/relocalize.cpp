@@ -136,7 +136,7 @@ int relocalize(const RelocalizeArguments& arguments) {
     require_own_poses(*folder);
   }
   const std::unique_ptr<FeatureExtractor> extractor = make_extractor(arguments.features);
-  const SearchedMap map = open_map(arguments, map_header(sequence->camera(), *extractor));
+  const SearchedMap map = open_map(arguments, map_header(*extractor));
   const Relocalizer relocalizer(sequence->camera(), extractor->traits(), options.relocalization);
   print_recording(*sequence);
   std::optional<Unsaved> unsaved(std::in_place);

@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "core/error.h"
 #include "io/calibration/calibration_presets.h"
+#include "io/calibration/foreign_calibration.h"
 #include "io/formats/options_yaml.h"
 
 namespace dxslam {
@@ -13,6 +16,13 @@ namespace {
 
 // The fields of Camera as options, so that reading and dumping are those of every options struct.
 struct CameraFields : Camera {
+  std::string lens_name = Lens().model->name;
+  std::string where;
+
+  // While a file is read: those of other lenses are unknown keys.
+  void choose_lens();
+  void choose_lens() const {}
+
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit("width", self.width, {16, 16384}, "pixels", "image width");
@@ -21,11 +31,12 @@ struct CameraFields : Camera {
     visit("fy", self.fy, {1, 1e5}, "pixels", "focal length");
     visit("cx", self.cx, {-16384, 32768}, "pixels", "principal point, centre of pixel (0, 0) is 0");
     visit("cy", self.cy, {-16384, 32768}, "pixels", "principal point");
-    visit("k1", self.k1, {-100, 100}, "", "radial distortion");
-    visit("k2", self.k2, {-100, 100}, "", "radial distortion");
-    visit("p1", self.p1, {-100, 100}, "", "tangential distortion");
-    visit("p2", self.p2, {-100, 100}, "", "tangential distortion");
-    visit("k3", self.k3, {-100, 100}, "", "radial distortion");
+    visit("lens", self.lens_name, "", "radtan, rational, kannala_brandt or double_sphere");
+    self.choose_lens();
+    for (std::size_t i = 0; i < self.lens.model->parameter_count(); ++i) {
+      visit(self.lens.model->parameters[i], self.lens.parameters[i], {-100, 100}, "",
+            "parameter of the lens");
+    }
     visit("fps", self.fps, {1e-3, 1e4}, "1/s", "nominal frame rate");
     visit("depth_factor", self.depth_factor, {1e-3, 1e6}, "1/m", "raw depth of one metre");
     visit("depth_baseline", self.depth_baseline, {1e-4, 10}, "m", "baseline of the depth sensor");
@@ -36,6 +47,15 @@ struct CameraFields : Camera {
           "first to last row of a rolling shutter; 0 = all rows at once");
   }
 };
+
+void CameraFields::choose_lens() {
+  lens.model = find_lens_model(lens_name);
+  if (lens.model != nullptr) return;
+  std::vector<std::string> known;
+  for (const LensModel* model : lens_models()) known.emplace_back(model->name);
+  throw InputError(fmt::format("{}: lens is {}, expected one of {}", where, in_quotes(lens_name),
+                               fmt::join(known, ", ")));
+}
 
 struct CalibrationFields : CameraFields {
   DepthCamera depth_camera;
@@ -68,7 +88,12 @@ void require_intrinsics(const std::string& yaml, const std::string& where) {
 }  // namespace
 
 RgbdCalibration parse_calibration(const std::string& yaml, const std::string& where) {
+  if (std::optional<Camera> foreign = parse_foreign_calibration(yaml, where)) {
+    foreign->prepare(where);
+    return {*foreign, {}};
+  }
   CalibrationFields fields;
+  fields.where = where;
   read_options_yaml(yaml, where, fields);
   require_intrinsics(yaml, where);
   fields.prepare(where);
@@ -114,6 +139,7 @@ const std::string& camera_preset_text(const std::string& name) {
 std::string dump_camera(const Camera& camera, const std::string& title) {
   CameraFields fields;
   static_cast<Camera&>(fields) = camera;
+  fields.lens_name = camera.lens.model->name;
   return "# " + title + "\n" + dump_options_yaml(fields);
 }
 

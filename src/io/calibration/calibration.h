@@ -12,7 +12,8 @@ namespace dxslam {
 
 // Camera files are YAML with one field of Camera a line, read strictly: unknown keys are errors,
 // width, height, fx, fy, cx and cy must be there, the rest has the defaults of Camera. The presets
-// are the files of calibration/ at the top of the repository, compiled into the program.
+// are the files of calibration/ at the top of the repository, compiled into the program. The forms
+// of others are read as well: foreign_calibration.h.
 
 /// What a camera file says: the colour camera, and the depth camera where depth images are not
 /// registered to colour (its optional field depth_camera, with fx, fy, cx and cy and where it is).

@@ -23,15 +23,15 @@ TEST(Calibration, Freiburg1HasThePublishedValues) {
   const Camera camera = load_camera("tum_fr1");
   EXPECT_EQ(camera.fx, 517.306408);
   EXPECT_EQ(camera.cy, 255.313989);
-  EXPECT_EQ(camera.p1, -0.005358);
-  EXPECT_EQ(camera.k3, 1.163314);
+  EXPECT_EQ(camera.lens.parameters[2], -0.005358);
+  EXPECT_EQ(camera.lens.parameters[4], 1.163314);
   EXPECT_EQ(camera.depth_factor, 5000.0);
 }
 
 TEST(Calibration, DumpReadsBackToTheSame) {
   const Camera camera = load_camera("tum_fr2");
   const Camera again = parse_camera(dump_camera(camera, "A title"), "dump");
-  EXPECT_EQ(again.k2, camera.k2);
+  EXPECT_EQ(again, camera);
   EXPECT_EQ(again.width, camera.width);
   EXPECT_EQ(dump_camera(again, "A title"), dump_camera(camera, "A title"));
 }
@@ -45,6 +45,26 @@ TEST(Calibration, ReadsWhereTheDepthCameraIs) {
   EXPECT_EQ(calibration.depth_camera.color_from_depth().translation().x(), -0.025);
   EXPECT_EQ(calibration.camera.fx, parse_camera(test_calibration(), "c.yaml").fx);
   EXPECT_TRUE(parse_calibration(test_calibration(), "c.yaml").depth_camera.registered());
+}
+
+TEST(Calibration, KnowsTheParametersOfEachLens) {
+  const std::string good = test_calibration();
+  for (const LensModel* model : lens_models()) {
+    std::string yaml = good + "lens: " + model->name + "\n";
+    Camera expected = parse_camera(good, "c.yaml");
+    expected.lens = {model, {}};
+    for (std::size_t i = 0; i < model->parameter_count(); ++i) {
+      expected.lens.parameters[i] = 0.001 * static_cast<double>(i + 1);
+      yaml += fmt::format("{}: {}\n", model->parameters[i], expected.lens.parameters[i]);
+    }
+    const Camera camera = parse_camera(yaml, "c.yaml");
+    EXPECT_EQ(camera, expected) << model->name;
+    EXPECT_EQ(parse_camera(dump_camera(camera, "again"), "again.yaml"), camera);
+  }
+  expect_input_error([&] { parse_camera(good + "lens: periscope\n", "c.yaml"); },
+                     {"c.yaml: lens is 'periscope'", "double_sphere"});
+  expect_input_error([&] { parse_camera(good + "lens: kannala_brandt\np1: 1\n", "c.yaml"); },
+                     {"c.yaml:9", "p1"});
 }
 
 TEST(Calibration, RefusesHalfADepthCamera) {

@@ -41,7 +41,7 @@ cv::Mat no_depth(const Camera& camera) {
 TEST(DepthRegistration, PutsReadingsWhereTheColourCameraSeesThem) {
   Camera color = color_camera();
   for (const double k1 : {0.0, 0.2}) {
-    color.k1 = k1;
+    color.lens.parameters[0] = k1;
     const DepthCamera depth = depth_camera();
     const DepthRegistration registration(color, depth);
     for (const cv::Point at : {cv::Point(20, 30), cv::Point(80, 60), cv::Point(130, 100)}) {

@@ -84,11 +84,7 @@ void read_sensors(const std::string& path, Camera& camera) {
   if (child(sensor, "distortion_coefficients").IsNull()) return;
   const auto distortion =
       matrix_data(child(sensor, "distortion_coefficients"), 5, path, "distortion_coefficients");
-  camera.k1 = distortion[0];
-  camera.k2 = distortion[1];
-  camera.p1 = distortion[2];
-  camera.p2 = distortion[3];
-  camera.k3 = distortion[4];
+  std::copy(distortion.begin(), distortion.end(), camera.lens.parameters.begin());
 }
 
 std::optional<SE3> read_base_from_color(const std::string& path) {

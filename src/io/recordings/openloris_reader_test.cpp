@@ -84,7 +84,7 @@ TEST(OpenLorisReader, ReadsCalibrationAndMovesTheTruthToTheCamera) {
   EXPECT_EQ(sequence->camera().fx, 61.0);
   EXPECT_EQ(sequence->camera().fy, 62.0);
   EXPECT_EQ(sequence->camera().cx, 31.5);
-  EXPECT_EQ(sequence->camera().p1, 0.001);
+  EXPECT_EQ(sequence->camera().lens.parameters[2], 0.001);
   EXPECT_EQ(sequence->camera().depth_baseline, 0.05);
   EXPECT_FLOAT_EQ(sequence->read(1)->depth.at<float>(3, 3), 2.5F);
   ASSERT_EQ(sequence->ground_truth().size(), 1U);
