@@ -72,6 +72,12 @@ void check_size(const std::string& text, const std::string& where) {
 
 }  // namespace
 
+YAML::Node yaml_child(const YAML::Node& node, const std::string& key) {
+  if (!node.IsDefined() || !node.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
+  const YAML::Node value = node[key];
+  return value ? value : YAML::Node(YAML::NodeType::Undefined);
+}
+
 int yaml_line(const YAML::Mark& mark) { return mark.line < 0 ? 1 : mark.line + 1; }
 
 YAML::Node parse_yaml(const std::string& text, const std::string& where) {
