@@ -53,6 +53,8 @@ struct SyntheticOptions {
   double fps = 15.0;
   int width = 640;
   int height = 480;
+  double focal_length = 525.0 / 640.0;
+  std::string lens;
   int threads = 2;
   PathOptions path;
   FactorOptions factors;
@@ -65,6 +67,8 @@ struct SyntheticOptions {
     visit("fps", self.fps, {0.01, 240.0}, "1/s", "frame rate");
     visit("width", self.width, {32, 4096}, "pixels", "of the images");
     visit("height", self.height, {32, 4096}, "pixels", "of the images");
+    visit("focal_length", self.focal_length, {0.2, 5.0}, "image widths", "of the camera");
+    visit("lens", self.lens, "", "model of the lens; empty: none");
     visit("threads", self.threads, {1, 256}, "", "threads; has no influence on the result");
     visit.group("path", self.path);
     visit.group("factors", self.factors);

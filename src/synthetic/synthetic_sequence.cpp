@@ -17,18 +17,20 @@ namespace {
 constexpr double kExposureTime = 0.02;  // seconds, at motion_blur = 1
 constexpr int kBlurSamples = 6;
 
-// A Kinect: 525 pixels for a width of 640, depth in millimetres.
-Camera kinect(const SyntheticOptions& options) {
+// A Kinect by default; depth in millimetres.
+Camera camera_of(const SyntheticOptions& options) {
   Camera camera;
   camera.width = options.width;
   camera.height = options.height;
-  camera.fx = camera.fy = 525.0 * options.width / 640.0;
+  camera.fx = camera.fy = options.focal_length * options.width;
   camera.cx = 0.5 * (options.width - 1);
   camera.cy = 0.5 * (options.height - 1);
   camera.fps = options.fps;
   camera.depth_factor = 1000.0;
   camera.depth_baseline = 0.075;
   camera.max_depth = 10.0;
+  camera.lens = synthetic_lens(options.lens);
+  camera.prepare("the synthetic camera");
   return camera;
 }
 
@@ -39,7 +41,8 @@ SyntheticSequence::SyntheticSequence(const SyntheticOptions& options)
   validate_options("synthetic", options);
   const auto seed = static_cast<std::uint64_t>(options.seed);
   const auto factor_seed = static_cast<std::uint64_t>(options.factors.seed);
-  camera_ = kinect(options);
+  camera_ = camera_of(options);
+  if (camera_.has_distortion()) lens_view_.emplace(camera_);
   layout_ = make_layout(options.scene, seed);
   apply_factors(layout_, options.factors);
   path_.emplace(layout_, path_with_factors(options.path, options.factors), seed);
@@ -64,12 +67,17 @@ double SyntheticSequence::path_length() const {
   return path_->length_at(ground_truth_.back().stamp);
 }
 
+Rendering SyntheticSequence::seen(const std::vector<Surface>& extra, const SE3& world_from_camera,
+                                  const RenderOptions& options) const {
+  if (!lens_view_) return render(world_, extra, camera_, world_from_camera, options);
+  return lens_view_->bent(render(world_, extra, lens_view_->pinhole(), world_from_camera, options));
+}
+
 Rendering SyntheticSequence::draw_ideal(std::size_t index, int threads) const {
   const StampedPose& pose = ground_truth_[index];
   RenderOptions options;
   options.threads = threads;
-  return render(world_, people_->surfaces_at(world_, pose.stamp), camera_, pose.world_from_camera,
-                options);
+  return seen(people_->surfaces_at(world_, pose.stamp), pose.world_from_camera, options);
 }
 
 // Mean over moments of the exposure, the places within a pixel spread evenly.
@@ -85,8 +93,7 @@ cv::Mat SyntheticSequence::exposed_radiance(const Rendering& sharp, double time,
     options.antialias = false;
     options.shift_x = part;
     options.shift_y = std::fmod(k * 0.618034, 1.0) - 0.5;
-    sum += render(world_, people_->surfaces_at(world_, moment), camera_,
-                  path_->world_from_camera(moment), options)
+    sum += seen(people_->surfaces_at(world_, moment), path_->world_from_camera(moment), options)
                .radiance;
   }
   return sum * (1.0 / kBlurSamples);

@@ -10,6 +10,7 @@
 #include "core/sequence.h"
 #include "synthetic/camera_path.h"
 #include "synthetic/layout.h"
+#include "synthetic/lens_view.h"
 #include "synthetic/low_light.h"
 #include "synthetic/people.h"
 #include "synthetic/renderer.h"
@@ -49,11 +50,15 @@ class SyntheticSequence : public RgbdSequence {
   double path_length() const;
 
  private:
+  /// Through the lens.
+  Rendering seen(const std::vector<Surface>& extra, const SE3& world_from_camera,
+                 const RenderOptions& options) const;
   cv::Mat exposed_radiance(const Rendering& sharp, double time, int threads) const;
 
   SyntheticOptions options_;
   std::string name_;
   Camera camera_;
+  std::optional<LensView> lens_view_;
   RecordingFacts facts_{"the synthetic camera", true, 0.0, 0.0, {}, {}};
   Layout layout_;
   World world_;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -85,6 +86,36 @@ TEST(SyntheticSequence, GroundTruthFitsTheGeometryAndTheColours) {
     }
   }
   EXPECT_GT(compare_views(sequence, 0, nearest).points, 5000);
+}
+
+// The same place at the same moment, with and without a lens.
+TEST(SyntheticSequence, ALensBendsWhatAPinholeSees) {
+  SyntheticOptions options = quiet_room();
+  options.frames = 1;
+  const SyntheticSequence straight(options);
+  const Rendering expected = straight.draw_ideal(0, 2);
+  for (const LensModel* model : lens_models()) {
+    options.lens = model->name;
+    const SyntheticSequence bent(options);
+    const Rendering seen = bent.draw_ideal(0, 2);
+    ASSERT_EQ(seen.depth.size(), expected.depth.size());
+    int compared = 0;
+    int same = 0;
+    for (int y = 4; y < seen.depth.rows; y += 4) {
+      for (int x = 4; x < seen.depth.cols; x += 4) {
+        const auto pixel = bent.camera().undistort({x, y});
+        if (!pixel || !straight.camera().contains(*pixel)) continue;
+        const float depth = expected.depth.at<float>(static_cast<int>(std::lround(pixel->y())),
+                                                     static_cast<int>(std::lround(pixel->x())));
+        ++compared;
+        if (std::abs(depth - seen.depth.at<float>(y, x)) < 0.02F * depth) ++same;
+      }
+    }
+    EXPECT_GT(compared, seen.depth.rows * seen.depth.cols / 32) << model->name;
+    EXPECT_GT(same, 0.97 * compared) << model->name;
+  }
+  options.lens = "periscope";
+  EXPECT_THROW(SyntheticSequence{options}, InputError);
 }
 
 TEST(SyntheticSequence, EqualOptionsGiveEqualFramesInAnyOrderWithAnyThreads) {

@@ -80,6 +80,11 @@ void add_synth_command(CLI::App& app) {
   command->add_option("--height", options.height, "pixels")
       ->check(range_of<SyntheticOptions>("height"))
       ->capture_default_str();
+  command->add_option("--focal-length", options.focal_length, "of the camera, in image widths")
+      ->check(range_of<SyntheticOptions>("focal_length"))
+      ->capture_default_str();
+  command->add_option("--lens", options.lens,
+                      "radtan, rational, kannala_brandt or double_sphere (default: none)");
   command->add_option("--speed", options.path.speed, "walking speed, m/s; 0: the scene's own")
       ->check(range_of<PathOptions>("speed"))
       ->capture_default_str();
