@@ -97,6 +97,7 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
     map_in.emplace([path = settings_.map_in] { return load_map(path); });
   }
   if ((map_in && !map_in->wait()) || !network.wait()) return nullptr;
+  max_depth_ = camera.max_depth;
   std::optional<StoredMap> stored;
   if (map_in) stored.emplace(map_in->get());
   const auto note = [this, on_frame = std::move(on_frame)](const TrackedFrame& frame) {
@@ -156,7 +157,7 @@ bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,
 }
 
 bool Session::process(const RgbdImage& image, bool live) {
-  first_pose_.offer(image, header_.camera.max_depth);
+  first_pose_.offer(image, max_depth_);
   thumbnails_->offer(image);
   if (live) return system_->try_process(image);
   system_->process(image);

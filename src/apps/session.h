@@ -77,6 +77,7 @@ class Session {
   std::optional<Thumbnails> thumbnails_;
   std::optional<AutoSaver> saver_;
   MapHeader header_;
+  double max_depth_ = 0.0;  // of the camera, metres
   System* system_ = nullptr;
   FirstError error_;
   std::optional<Unsaved> unsaved_;

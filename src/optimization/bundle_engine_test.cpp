@@ -241,6 +241,8 @@ TEST(BundleEngine, BoundsItsMemoryForManyPoses) {
   constexpr int kPoses = 20000;
   const Camera camera = test_camera();
   BundleProblem problem;
+  problem.rig = Rig(camera);
+  problem.poses.resize(kPoses);
   BundleState state;
   for (int i = 0; i < kPoses; ++i) {
     const Eigen::Vector3d position(0.1 * i, 0.0, 0.0);
@@ -251,8 +253,9 @@ TEST(BundleEngine, BoundsItsMemoryForManyPoses) {
         BundleProblem::Observation o;
         o.pose = pose;
         o.point = static_cast<int>(state.points.size());
-        o.pixel = camera.project(state.camera_from_world[static_cast<std::size_t>(pose)] * point);
-        o.disparity = camera.bf() / 2.0;
+        o.measured.pixel =
+            camera.project(state.camera_from_world[static_cast<std::size_t>(pose)] * point);
+        o.measured.disparity = camera.bf() / 2.0;
         problem.observations.push_back(o);
       }
       state.points.emplace_back(point + Eigen::Vector3d(0.01, 0.0, 0.0));
@@ -260,7 +263,6 @@ TEST(BundleEngine, BoundsItsMemoryForManyPoses) {
   }
   BundleOptions options;
   BundleStage stage;
-  stage.camera = &camera;
   stage.problem = &problem;
   stage.options = &options;
   stage.active.assign(problem.observations.size(), 1);
