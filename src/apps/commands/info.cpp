@@ -59,7 +59,11 @@ void print_camera(const RgbdSequence& sequence) {
   print("  {}x{}, fx {:.2f}, fy {:.2f}, cx {:.2f}, cy {:.2f}\n", c.width, c.height, c.fx, c.fy,
         c.cx, c.cy);
   if (!c.has_distortion()) return print("  no distortion\n");
-  print("  k1 {:g}, k2 {:g}, p1 {:g}, p2 {:g}, k3 {:g}\n", c.k1, c.k2, c.p1, c.p2, c.k3);
+  print("  lens {}", c.lens.model->name);
+  for (std::size_t i = 0; i < c.lens.model->parameter_count(); ++i) {
+    print(", {} {:g}", c.lens.model->parameters[i], c.lens.parameters[i]);
+  }
+  print("\n");
 }
 
 void print_depth(const RgbdSequence& sequence) {

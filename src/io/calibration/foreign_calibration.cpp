@@ -20,7 +20,9 @@ struct RosLens {
   const LensModel* model;
 };
 
-constexpr std::array<RosLens, 7> kRosLenses = {{{"plumb_bob", &kRadialTangential},
+constexpr std::array<RosLens, 9> kRosLenses = {{{"plumb_bob", &kRadialTangential},
+                                                {"Brown Conrady", &kRadialTangential},
+                                                {"Modified Brown Conrady", &kRadialTangential},
                                                 {"rational_polynomial", &kRational},
                                                 {"equidistant", &kKannalaBrandt},
                                                 {"fisheye", &kKannalaBrandt},

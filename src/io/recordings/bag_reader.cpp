@@ -151,12 +151,6 @@ void pair_streams(BagPictures& pictures, const SequenceOptions& options, Sequenc
                   pictures.depth() ? pictures.depth()->name : "depth", options.max_association_s));
 }
 
-bool is_radial_tangential(const std::string& model) {
-  static const char* const kNames[] = {"plumb_bob", "rational_polynomial", "Brown Conrady",
-                                       "Modified Brown Conrady", "Inverse Brown Conrady"};
-  return std::find(std::begin(kNames), std::end(kNames), model) != std::end(kNames);
-}
-
 // The camera of the image as it is on the topic: raw, or rectified where its name says so.
 Camera camera_of(const FoundCameraInfo& found, const PictureStream& stream, bool inverse = false) {
   const RosCameraInfo& info = found.info;
@@ -169,24 +163,16 @@ Camera camera_of(const FoundCameraInfo& found, const PictureStream& stream, bool
   camera.fy = rectified ? info.p[5] : info.k[4];
   camera.cy = rectified ? info.p[6] : info.k[5];
   camera.depth_factor = kMillimetres;
-  const auto used =
-      std::find_if(info.d.rbegin(), info.d.rend(), [](double value) { return value != 0.0; });
-  const auto count = static_cast<std::size_t>(info.d.rend() - used);
-  if (rectified || count == 0) return camera;
-  if (!is_radial_tangential(info.distortion_model) || count > 5) {
-    throw InputError(
-        fmt::format("{}: distortion model {} with {} numbers, expected plumb_bob with at most 5",
-                    found.topic, info.distortion_model, count));
-  }
-  std::array<double, 5> d{};
-  std::copy_n(info.d.begin(), count, d.begin());
-  if (inverse) {
-    camera.prepare(found.topic);  // divides by the focal lengths
-    set_inverse_distortion(d, camera);
+  if (rectified) return camera;
+  const std::vector<double> d(info.d.begin(), info.d.end());
+  if (!inverse) {
+    camera.lens = lens_from_ros(info.distortion_model, d, found.topic);
     return camera;
   }
-  double* const fields[] = {&camera.k1, &camera.k2, &camera.p1, &camera.p2, &camera.k3};
-  for (std::size_t i = 0; i < d.size(); ++i) *fields[i] = d[i];
+  std::array<double, 5> coefficients{};
+  std::copy_n(d.begin(), std::min(d.size(), coefficients.size()), coefficients.begin());
+  camera.prepare(found.topic);  // divides by the focal lengths
+  set_inverse_distortion(coefficients, camera);
   return camera;
 }
 

@@ -123,10 +123,10 @@ TEST(BagReader, TakesTheRectifiedCameraForRectifiedImages) {
   const TestFolder folder;
   TestBag bag;
   Camera distorted = test_camera();
-  distorted.k1 = 0.05;
+  distorted.lens.parameters[0] = 0.05;
   bag.add_camera_info("/camera/rgb/camera_info", "color", distorted, 55.0);
   bag.add_image("/camera/rgb/image_color", "color", kStart, "bgr8", test_color());
-  EXPECT_EQ(open(folder, bag)->camera().k1, 0.05);
+  EXPECT_EQ(open(folder, bag)->camera().lens.parameters[0], 0.05);
   TestBag rectified;
   rectified.add_camera_info("/camera/rgb/camera_info", "color", distorted, 55.0);
   rectified.add_image("/camera/rgb/image_rect_color", "color", kStart, "bgr8", test_color());
@@ -226,10 +226,20 @@ TEST(BagReader, RefusesLensesThatAreNotKnown) {
   const TestFolder folder;
   TestBag bag;
   Camera fisheye = test_camera();
-  fisheye.k1 = 0.1;
+  fisheye.lens.parameters[0] = 0.1;
+  bag.add_camera_info("/camera_info", "color", fisheye, 0.0, "omni");
+  bag.add_image("/image_raw", "color", kStart, "bgr8", test_color());
+  expect_input_error([&] { open(folder, bag); }, {"/camera_info", "omni", "plumb_bob"});
+}
+
+TEST(BagReader, KnowsFisheyes) {
+  const TestFolder folder;
+  TestBag bag;
+  Camera fisheye = test_camera();
+  fisheye.lens.parameters[0] = 0.1;
   bag.add_camera_info("/camera_info", "color", fisheye, 0.0, "equidistant");
   bag.add_image("/image_raw", "color", kStart, "bgr8", test_color());
-  expect_input_error([&] { open(folder, bag); }, {"/camera_info", "equidistant", "plumb_bob"});
+  EXPECT_EQ(open(folder, bag)->camera().lens, (Lens{&kKannalaBrandt, {0.1}}));
 }
 
 TEST(BagReader, GivesWayToOtherFormatsInTheSameFolder) {
@@ -270,13 +280,9 @@ TEST_P(RealSenseRecording, HasItsCalibration) {
   EXPECT_EQ(camera.depth_factor, 2000.0);
   // "Inverse Brown Conrady": the polynomial gives the ideal pixel.
   Camera polynomial = camera;
-  polynomial.k1 = 0.05;
-  polynomial.k2 = -0.02;
-  polynomial.p1 = 0.001;
-  polynomial.p2 = 0.002;
-  polynomial.k3 = 0.003;
+  polynomial.lens.parameters = {0.05, -0.02, 0.001, 0.002, 0.003};
   for (const Eigen::Vector2d& raw : {Eigen::Vector2d(2, 3), {60, 5}, {30, 40}}) {
-    EXPECT_LT((camera.undistort(raw) - polynomial.distort(raw)).norm(), 0.02);
+    EXPECT_LT((*camera.undistort(raw) - polynomial.distort(raw)).norm(), 0.02);
   }
 }
 

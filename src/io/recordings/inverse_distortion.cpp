@@ -40,8 +40,8 @@ double set_inverse_distortion(const std::array<double, 5>& inverse, Camera& came
     }
   }
   const Eigen::Matrix<double, 5, 1> fitted = shifts.colPivHouseholderQr().solve(moved);
-  double* const fields[] = {&camera.k1, &camera.k2, &camera.p1, &camera.p2, &camera.k3};
-  for (int i = 0; i < 5; ++i) *fields[i] = fitted[i];
+  camera.lens = Lens();
+  std::copy(fitted.begin(), fitted.end(), camera.lens.parameters.begin());
   return (shifts * fitted - moved).cwiseAbs().maxCoeff() * std::max(camera.fx, camera.fy);
 }
 

@@ -20,11 +20,7 @@ TEST(InverseDistortion, UndoesWhatTheInversePolynomialDoes) {
   camera.prepare("test");
   // The polynomial itself is what distort() does with these coefficients.
   Camera polynomial = camera;
-  polynomial.k1 = inverse[0];
-  polynomial.k2 = inverse[1];
-  polynomial.p1 = inverse[2];
-  polynomial.p2 = inverse[3];
-  polynomial.k3 = inverse[4];
+  std::copy(inverse.begin(), inverse.end(), polynomial.lens.parameters.begin());
   for (const Eigen::Vector2d& raw : {Eigen::Vector2d(0, 0), {639, 0}, {100, 479}, {400, 200}}) {
     const Eigen::Vector2d ideal = polynomial.distort(raw);
     EXPECT_LT((camera.distort(ideal) - raw).norm(), 0.1);

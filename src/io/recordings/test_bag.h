@@ -48,7 +48,7 @@ class TestBag {
     std::string message = header(0, frame) + number(static_cast<std::uint32_t>(camera.height)) +
                           number(static_cast<std::uint32_t>(camera.width)) + text(model) +
                           number(std::uint32_t{5});
-    for (double d : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}) message += number(d);
+    for (int i = 0; i < 5; ++i) message += number(camera.lens.parameters[i]);
     const double k[] = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
     for (double value : k) message += number(value);
     for (int i = 0; i < 9; ++i) message += number(i % 4 == 0 ? 1.0 : 0.0);

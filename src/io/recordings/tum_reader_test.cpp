@@ -175,8 +175,9 @@ TEST(TumReader, SkipsAndCountsRepeatedLines) {
   ASSERT_EQ(sequence->skipped().size(), 2U);
   EXPECT_EQ(sequence->skipped()[0].index, 2U);
   EXPECT_THAT(sequence->skipped()[0].reason, testing::HasSubstr("rgb.txt:8: stamp 0.2 was"));
-  EXPECT_THAT(sequence->facts().notes,
-              testing::ElementsAre(testing::HasSubstr("lines of depth.txt that were left out: 1;")));
+  EXPECT_THAT(
+      sequence->facts().notes,
+      testing::ElementsAre(testing::HasSubstr("lines of depth.txt that were left out: 1;")));
 }
 
 TEST(TumReader, NamesDecimalCommas) {
