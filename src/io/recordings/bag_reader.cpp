@@ -14,6 +14,7 @@
 #include "io/bags/bag_streams.h"
 #include "io/bags/realsense_bag.h"
 #include "io/bags/ros_picture.h"
+#include "io/calibration/foreign_calibration.h"
 #include "io/primitives/limits.h"
 #include "io/recordings/inverse_distortion.h"
 #include "io/recordings/nearest_in_time.h"
