@@ -24,7 +24,7 @@ TEST(InverseDistortion, UndoesWhatTheInversePolynomialDoes) {
   for (const Eigen::Vector2d& raw : {Eigen::Vector2d(0, 0), {639, 0}, {100, 479}, {400, 200}}) {
     const Eigen::Vector2d ideal = polynomial.distort(raw);
     EXPECT_LT((camera.distort(ideal) - raw).norm(), 0.1);
-    EXPECT_LT((camera.undistort(raw) - ideal).norm(), 0.1);
+    EXPECT_LT((*camera.undistort(raw) - ideal).norm(), 0.1);
   }
 }
 
