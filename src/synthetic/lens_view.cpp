@@ -60,7 +60,7 @@ Rendering LensView::bent(const Rendering& drawn) const {
     return result;
   };
   Rendering result;
-  result.radiance = bend(drawn.radiance, cv::INTER_LINEAR, 0.0);
+  result.radiance = cv::max(bend(drawn.radiance, cv::INTER_CUBIC, 0.0), 0.0);
   // No depth or surface lies between two others.
   result.depth = bend(drawn.depth, cv::INTER_NEAREST, 0.0);
   result.incidence = bend(drawn.incidence, cv::INTER_NEAREST, 0.0);
