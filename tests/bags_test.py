@@ -8,7 +8,10 @@ where that is missing.
 
 usage: bags_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
 """
+import json
 import os
+import shutil
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -71,6 +74,26 @@ class Containers(unittest.TestCase):
                 self.assertEqual([line.split()[0] for line in got],
                                  [line.split()[0] for line in whole[:len(got)]])
 
+    def test_the_journal_of_a_killed_recorder_is_read(self):
+        source, work, killed = (self.folder / name for name in ("bag_sqlite", "journal", "killed"))
+        work.mkdir()
+        killed.mkdir()
+        file = next(source.glob("*.db3"))
+        shutil.copy(file, work)
+        database = sqlite3.connect(work / file.name)
+        rows = database.execute("SELECT * FROM messages WHERE id > 45").fetchall()
+        database.execute("DELETE FROM messages WHERE id > 45")
+        database.commit()
+        database.execute("PRAGMA journal_mode=WAL")
+        database.executemany(f"INSERT INTO messages VALUES ({','.join('?' * len(rows[0]))})", rows)
+        database.commit()
+        for part in work.iterdir():
+            if not part.name.endswith("-shm"):
+                shutil.copy(part, killed)
+        database.close()
+        self.assertEqual(len(list(killed.iterdir())), 2, "the file and its journal")
+        self.assertEqual(self.poses(killed), self.expected)
+
     def test_topics_can_be_named(self):
         self.assertEqual(self.poses(self.folder / "bag_two_cameras.mcap", "--color-topic",
                                     "/front/color/image_raw", "--depth-topic",
@@ -78,6 +101,33 @@ class Containers(unittest.TestCase):
         done = dxslam("run", self.folder / "bag_two_cameras.mcap", "--color-topic", "/nosuch")
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("/front/color/image_raw", done.stderr)
+
+    def test_info_tells_what_is_in_a_recording(self):
+        out = self.folder / "info.json"
+        for name, topics in (("bag_zstd.mcap", 3), ("bag_sqlite", 3), ("folder", 0)):
+            with self.subTest(name):
+                done = dxslam("info", self.folder / name, "--json", out)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn("missing: nothing", done.stdout)
+                told = json.loads(out.read_text())
+                self.assertEqual(len(told["topics"]), topics)
+                self.assertEqual(told["frames"]["count"], FRAMES)
+                self.assertEqual((told["camera"]["width"], told["camera"]["height"]), (320, 240))
+                self.assertEqual(told["missing"], [])
+        done = dxslam("info", ROOT / "tests" / "data" / "bags" / "zstd.mcap", "--json", out)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("cannot be used: /camera/color/camera_info: camera height is 12", done.stdout)
+        self.assertFalse(json.loads(out.read_text())["usable"])
+
+    def test_every_command_takes_a_bag(self):
+        bag, out = self.folder / "bag_zstd.mcap", self.folder / "out_commands"
+        for words in (["lifelong", bag, self.folder / "bag_sqlite", "--features", "orb", "--out", out],
+                      ["bench", "features", bag, "--features", "orb", "--frames", 2],
+                      ["vocab", "train", f"{bag}@0:20", "--features", "orb", "--words", 50,
+                       "--out", self.folder / "words.fbow"]):
+            with self.subTest(words[0]):
+                done = dxslam(*words)
+                self.assertEqual(done.returncode, 0, done.stderr)
 
 
 if __name__ == "__main__":

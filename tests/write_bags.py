@@ -19,6 +19,7 @@ from rosbags.typesys import Stores, get_typestore
 
 COLOR, DEPTH, INFO = "/camera/color/image_raw", "/camera/depth/image_raw", "/camera/color/camera_info"
 FRAME = "camera_color_optical_frame"
+FIELDS = ("width", "height", "fx", "fy", "cx", "cy", "fps", "depth_factor")
 START = 1_700_000_000 * 10**9  # a clock of today
 METRES = numpy.float32(0.001)  # rounded as every reader of 16-bit depth rounds
 
@@ -36,7 +37,7 @@ class Recording:
         self.camera = {}
         for line in (folder / "calibration.yaml").read_text().splitlines():
             key, _, value = line.split("#")[0].partition(":")
-            if value.strip():
+            if key.strip() in FIELDS:
                 self.camera[key.strip()] = float(value)
         lists = [[line.split() for line in (folder / name).read_text().splitlines()
                   if line and line[0] != "#"] for name in ("rgb.txt", "depth.txt")]
@@ -60,8 +61,7 @@ class Recording:
             (out / f"{name}.txt").write_text("\n".join(lines) + "\n")
         camera = {**self.camera, "depth_factor": 1000.0}
         (out / "calibration.yaml").write_text(
-            "".join(f"{key}: {value:g}\n" for key, value in camera.items()
-                    if key in ("width", "height", "fx", "fy", "cx", "cy", "fps", "depth_factor")))
+            "".join(f"{key}: {value:g}\n" for key, value in camera.items()))
 
 
 class Messages:

@@ -75,9 +75,8 @@ void print_depth(const RgbdSequence& sequence) {
         100.0 * facts.depth_share);
 }
 
-// What a user may miss, one sentence each.
+// What a user may miss of a recording that can be used, one sentence each.
 std::vector<std::string> missing_of(const RecordingInfo& info) {
-  if (info.sequence == nullptr) return {info.problem};
   std::vector<std::string> missing;
   if (!info.sequence->facts().has_depth) {
     missing.emplace_back("depth images, which `dxslam run` needs");
@@ -93,18 +92,17 @@ std::vector<std::string> missing_of(const RecordingInfo& info) {
 void print_info(const InfoArguments& arguments, const RecordingInfo& info) {
   print("{}: recording of format {}\n", arguments.source, info.format);
   print_topics(info.topics);
-  if (info.sequence != nullptr) {
-    const RgbdSequence& sequence = *info.sequence;
-    print("frames: {}{} depth, {:.1f} s from {:.6f} on{}\n", sequence.size(),
-          sequence.facts().has_depth ? " with" : " without", info.frames.last - info.frames.first,
-          info.frames.first, describe(info.frames));
-    print_camera(sequence);
-    print_depth(sequence);
-    print("true trajectory: {}\n", sequence.ground_truth().empty()
-                                       ? "none"
-                                       : fmt::format("{} poses", sequence.ground_truth().size()));
-    for (const std::string& note : sequence.facts().notes) print("note: {}\n", note);
-  }
+  if (info.sequence == nullptr) return print("cannot be used: {}\n", info.problem);
+  const RgbdSequence& sequence = *info.sequence;
+  print("frames: {}{} depth, {:.1f} s from {:.6f} on{}\n", sequence.size(),
+        sequence.facts().has_depth ? " with" : " without", info.frames.last - info.frames.first,
+        info.frames.first, describe(info.frames));
+  print_camera(sequence);
+  print_depth(sequence);
+  print("true trajectory: {}\n", sequence.ground_truth().empty()
+                                     ? "none"
+                                     : fmt::format("{} poses", sequence.ground_truth().size()));
+  for (const std::string& note : sequence.facts().notes) print("note: {}\n", note);
   const std::vector<std::string> missing = missing_of(info);
   for (const std::string& what : missing) print("missing: {}\n", what);
   if (missing.empty()) print("missing: nothing\n");
@@ -125,8 +123,11 @@ Json info_json(const InfoArguments& arguments, const RecordingInfo& info) {
     json["topics"].push_back(std::move(row));
   }
   json["usable"] = info.sequence != nullptr;
+  if (info.sequence == nullptr) {
+    json["problem"] = info.problem;
+    return json;
+  }
   json["missing"] = missing_of(info);
-  if (info.sequence == nullptr) return json;
   json["frames"] = timing_json(info.frames);
   json["frames"]["with_depth"] = info.sequence->facts().has_depth;
   json.update(recording_json(*info.sequence));

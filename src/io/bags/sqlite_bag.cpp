@@ -6,6 +6,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <unordered_map>
 
 #include "core/error.h"
@@ -110,13 +111,14 @@ class SqliteBag : public IndexedBag {
   }
   using Database = std::unique_ptr<sqlite3, Close>;
 
-  static Database open(const std::string& path) {
-    const RandomAccessFile file(path);
-    if (file.size() < kMagic.size() || file.read(0, kMagic.size()) != kMagic) {
-      throw InputError(fmt::format("{}: no SQLite file, expected a ROS 2 bag", path));
+  static Database connect(const std::string& path, const char* how) {
+    std::string uri = "file:";
+    for (const char c : std::filesystem::absolute(path).lexically_normal().string()) {
+      uri += c == '%' || c == '?' || c == '#' ? fmt::format("%{:02X}", c) : std::string(1, c);
     }
     sqlite3* made = nullptr;
-    const int result = sqlite3_open_v2(path.c_str(), &made, SQLITE_OPEN_READONLY, nullptr);
+    const int result = sqlite3_open_v2((uri + how).c_str(), &made,
+                                       SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
     Database database(made);
     if (result != SQLITE_OK) {
       throw InputError(fmt::format("{}: cannot be opened: {}", path, sqlite3_errstr(result)));
@@ -127,6 +129,24 @@ class SqliteBag : public IndexedBag {
     sqlite3_db_config(made, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(made, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_limit(made, SQLITE_LIMIT_LENGTH, static_cast<int>(limits::kBagChunkBytes));
+    return database;
+  }
+
+  static Database open(const std::string& path) {
+    const RandomAccessFile file(path);
+    if (file.size() < kMagic.size() || file.read(0, kMagic.size()) != kMagic) {
+      throw InputError(fmt::format("{}: no SQLite file, expected a ROS 2 bag", path));
+    }
+    // A recorder that was killed may leave a journal with the last messages. Otherwise the file is
+    // taken as it is, which needs no lock and writes nothing beside it.
+    std::error_code error;
+    const bool journal = std::filesystem::exists(path + "-wal", error) ||
+                         std::filesystem::exists(path + "-journal", error);
+    Database database = connect(path, journal ? "" : "?immutable=1");
+    if (journal && sqlite3_exec(database.get(), "SELECT 1 FROM topics", nullptr, nullptr,
+                                nullptr) != SQLITE_OK) {
+      database = connect(path, "?immutable=1");
+    }
     return database;
   }
 

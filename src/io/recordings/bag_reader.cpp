@@ -204,6 +204,7 @@ DepthCamera depth_camera_of(const Camera& lens, const SE3& color_from_depth) {
   depth.rx = r.x();
   depth.ry = r.y();
   depth.rz = r.z();
+  depth.lens = lens.lens;
   return depth;
 }
 
@@ -256,10 +257,6 @@ void register_depth(BagPictures& pictures, SequenceListing& listing) {
         listing.name, depth.name, color.name, depth.frame, color.frame));
   }
   lens.prepare(found->topic);
-  if (lens.has_distortion()) {
-    listing.notes.push_back(
-        fmt::format("the distortion of {} is not undone ({})", depth.name, found->topic));
-  }
   use_depth_camera(depth_camera_of(lens, *color_from_depth), listing);
 }
 

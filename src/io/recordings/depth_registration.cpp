@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "core/error.h"
 
 namespace dxslam {
 namespace {
 
+constexpr double kBehind = -1e9;  // of a reading where the lens sees nothing: never in view
 constexpr std::uint16_t kInvalid = std::numeric_limits<std::uint16_t>::max();
 
 }  // namespace
@@ -27,8 +29,12 @@ DepthRegistration::DepthRegistration(const Camera& color, const DepthCamera& dep
   rays_.reserve(static_cast<std::size_t>(raw_size_.area()));
   for (int y = 0; y < raw_size_.height; ++y) {
     for (int x = 0; x < raw_size_.width; ++x) {
-      const Eigen::Vector3d ray((x - depth.cx) / depth.fx, (y - depth.cy) / depth.fy, 1.0);
-      rays_.push_back((color_from_depth_.rotation() * ray).cast<float>());
+      const Eigen::Vector2d place((x - depth.cx) / depth.fx, (y - depth.cy) / depth.fy);
+      const std::optional<Eigen::Vector2d> ideal =
+          depth.lens.is_ideal() ? place : depth.lens.model->undistort(depth.lens.parameters, place);
+      const Eigen::Vector3d ray = ideal ? color_from_depth_.rotation() * ideal->homogeneous()
+                                        : Eigen::Vector3d(0.0, 0.0, kBehind);
+      rays_.push_back(ray.cast<float>());
     }
   }
 }

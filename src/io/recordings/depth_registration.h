@@ -20,6 +20,8 @@ struct DepthCamera {
   double x = 0.0, y = 0.0, z = 0.0;     ///< metres, where it is in the frame of the colour camera
   double rx = 0.0, ry = 0.0, rz = 0.0;  ///< radians, rotation vector of color_from_depth
 
+  Lens lens;  ///< no field of a camera file: as bags say it
+
   bool registered() const { return fx == 0.0; }
   SE3 color_from_depth() const { return {so3_exp({rx, ry, rz}), Eigen::Vector3d(x, y, z)}; }
 

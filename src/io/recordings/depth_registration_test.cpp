@@ -60,6 +60,32 @@ TEST(DepthRegistration, PutsReadingsWhereTheColourCameraSeesThem) {
   }
 }
 
+TEST(DepthRegistration, KnowsSizeAndLensOfTheDepthCamera) {
+  const Camera color = color_camera();
+  DepthCamera depth = depth_camera();
+  depth.width = 200;
+  depth.height = 90;
+  depth.lens.parameters[0] = -0.25;
+  const DepthRegistration registration(color, depth);
+  ASSERT_EQ(registration.raw_size(), cv::Size(200, 90));
+  const Eigen::Vector2d ideal(-0.45, 0.15);
+  const Eigen::Vector2d place =
+      depth.lens.model->distort(depth.lens.parameters, ideal, nullptr) * depth.fx +
+      Eigen::Vector2d(depth.cx, depth.cy);
+  cv::Mat raw(90, 200, CV_16UC1, cv::Scalar(0));
+  raw.at<std::uint16_t>(static_cast<int>(std::lround(place.y())),
+                        static_cast<int>(std::lround(place.x()))) = 1500;
+  const Eigen::Vector3d in_color = depth.color_from_depth() * (1.5 * ideal.homogeneous());
+  const Eigen::Vector2d pixel = color.project(in_color);
+  const cv::Mat registered = registration(raw);
+  ASSERT_EQ(registered.size(), cv::Size(color.width, color.height));
+  // Rounded twice, so a neighbour may have it; without the lens it would be 4 pixels off.
+  const cv::Rect around(static_cast<int>(std::lround(pixel.x())) - 1,
+                        static_cast<int>(std::lround(pixel.y())) - 1, 3, 3);
+  EXPECT_EQ(cv::countNonZero(registered), 1);
+  EXPECT_EQ(cv::countNonZero(registered(around)), 1);
+}
+
 TEST(DepthRegistration, KeepsTheNearestWhereSeveralMeet) {
   const Camera color = color_camera();
   DepthCamera depth = depth_camera();
