@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <unordered_map>
 
 #include "core/error.h"
@@ -55,7 +56,9 @@ class Query {
 
  private:
   [[noreturn]] void fail() const {
-    throw InputError(fmt::format("{}: unusable ROS 2 bag: {}", path_, sqlite3_errmsg(database_)));
+    const std::string_view why = sqlite3_errmsg(database_);  // may quote a schema of many lines
+    throw InputError(
+        fmt::format("{}: unusable ROS 2 bag: {}", path_, why.substr(0, why.find('\n'))));
   }
   sqlite3* database_;
   std::string path_;
