@@ -57,6 +57,7 @@ KeyframeId Map::add_keyframe(FramePtr frame, const SE3& world_from_camera, Keyfr
   keyframe.component = parent == kNoId ? component_count_++ : this->keyframe(parent).component;
   last_keyframe_ = keyframe.id;
   keyframes_.insert(last_keyframe_, std::move(keyframe));
+  keyframe_journal_.add(last_keyframe_);
   return last_keyframe_;
 }
 
@@ -69,6 +70,7 @@ PointId Map::add_point(const Eigen::Vector3d& position, KeyframeId keyframe,
   point.created_by = keyframe;
   point.visible = point.found = 1;
   points_.insert(id, std::move(point));
+  point_journal_.add(id);
   require(add_observation(id, keyframe, keypoint), "the keypoint of a new point must be free");
   refresh_point(id);
   return id;
@@ -108,6 +110,7 @@ void Map::remove_observation(PointId point, KeyframeId keyframe) {
   change_covisibility(p, keyframe, -1);
   if (p.observations.empty()) {
     points_.erase(point);
+    point_journal_.remove(point);
     return;
   }
   if (position < p.descriptor) --p.descriptor;
@@ -142,6 +145,7 @@ void Map::remove_keyframe(KeyframeId id) {
   });
   if (last_keyframe_ == id) last_keyframe_ = k.parent;
   keyframes_.erase(id);
+  keyframe_journal_.remove(id);
 }
 
 void Map::join_components(KeyframeId parent, KeyframeId child,
@@ -161,12 +165,14 @@ void Map::join_components(KeyframeId parent, KeyframeId child,
     if (k.component != from) return;
     k.component = into;
     k.world_from_camera = parent_world_from_child_world * k.world_from_camera;
+    keyframe_journal_.move(k.id);
     for (const PointId id : k.points) {
       if (id == kNoId) continue;
       MapPoint& p = *points_.find(id);
       // A point is moved once, by the first keyframe that sees it.
       if (p.observations.front().keyframe != k.id) continue;
       p.position = parent_world_from_child_world * p.position;
+      point_journal_.move(id);
       p.normal = parent_world_from_child_world.rotation() * p.normal;
     }
   });
@@ -180,10 +186,20 @@ cv::Mat Map::descriptor_of(PointId id) const {
 
 void Map::set_pose(KeyframeId id, const SE3& world_from_camera) {
   mutable_keyframe(id).world_from_camera = world_from_camera;
+  keyframe_journal_.move(id);
 }
 
 void Map::set_position(PointId id, const Eigen::Vector3d& position) {
   mutable_point(id).position = position;
+  point_journal_.move(id);
+}
+
+MapChanges Map::take_changes() {
+  MapChanges changes;
+  keyframe_journal_.take(changes.added_keyframes, changes.moved_keyframes,
+                         changes.removed_keyframes);
+  point_journal_.take(changes.added_points, changes.moved_points, changes.removed_points);
+  return changes;
 }
 
 void Map::count_visible(PointId id, std::uint32_t visible, std::uint32_t found) {

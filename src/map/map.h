@@ -7,6 +7,7 @@
 
 #include "core/rig.h"
 #include "map/id_table.h"
+#include "map/map_journal.h"
 #include "map/map_types.h"
 #include "map/removed_keyframes.h"
 
@@ -56,6 +57,15 @@ class Map {
   void join_components(KeyframeId parent, KeyframeId child,
                        const SE3& parent_world_from_child_world);
 
+  /// Whether what is done from now on is taken down for take_changes(); off at first.
+  void record_changes(bool on) {
+    keyframe_journal_.keep(on);
+    point_journal_.keep(on);
+  }
+  bool records_changes() const { return keyframe_journal_.is_kept(); }
+  /// What has changed since this was called last; nothing where it is not recorded.
+  MapChanges take_changes();
+
   bool has_keyframe(KeyframeId id) const { return keyframes_.find(id) != nullptr; }
   bool has_point(PointId id) const { return points_.find(id) != nullptr; }
   /// Throw ContractError for ids that do not exist (any more).
@@ -101,6 +111,8 @@ class Map {
   void count_covisibility();
 
   Rig rig_;
+  Journal<KeyframeId> keyframe_journal_;
+  Journal<PointId> point_journal_;
   IdTable<Keyframe> keyframes_;
   IdTable<MapPoint> points_;
   RemovedKeyframes removed_;

@@ -58,6 +58,11 @@ class Backend {
   void finish(const MayGoOn& may_go_on, const MapChange& change);
 
   const Map& map() const { return mapper_.map(); }
+  /// Whether changes of the map are taken down from now on (Map::take_changes).
+  void record_changes(bool on) {
+    if (map().records_changes() != on) mapper_.map().record_changes(on);
+  }
+  MapChanges take_changes() { return mapper_.map().take_changes(); }
   const std::vector<LoopEdge>& closed_loops() const { return closer_.closed_loops(); }
   const LoopLog& loop_log() const { return loop_log_; }
   const std::string& loop_method() const { return search_.method(); }

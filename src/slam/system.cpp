@@ -30,8 +30,10 @@ System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor
       options_(checked(options)),
       extractor_(std::move(extractor)),
       on_frame_(std::move(on_frame)),
-      tracker_(camera_, extractor_->traits(), options.tracking),
       backend_(camera_, *extractor_, options_, GiveWay(right_of_way_)),
+      mapping_session_(backend_, snapshots_, events_, times_, poses_),
+      tracking_session_(camera_, extractor_->traits(), options_, snapshots_, right_of_way_,
+                        [this](const Frame& frame) { return relocalize(frame); }),
       extracted_(static_cast<std::size_t>(options.queued_frames)),
       tasks_(static_cast<std::size_t>(options.queued_keyframes)) {
   mapping_ = options_.mode == "slam";
@@ -60,7 +62,8 @@ void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
   require(!began_, "a map must be loaded before the first image");
   require(map.keyframe_count() > 0, "a map to go on with must not be empty");
   backend_.load(std::move(map), std::move(closed_loops));
-  may_be_map_ = map_begun_ = true;
+  may_be_map_ = true;
+  tracking_session_.go_on_with_map();
   next_begins_sequence_ = true;
 }
 
@@ -84,8 +87,8 @@ void System::process(const RgbdImage& image) {
     extracted_.push(std::move(extracted));  // or there is an error to throw
   } else {
     guard([&] {
-      const Tracked tracked = track(extracted);
-      if (tracked.request) change_map([&] { map_keyframe(tracked); });
+      Tracked tracked = track(extracted);
+      if (tracked.request) change_map(mapping_of(std::move(tracked)));
     });
   }
   error_.rethrow();
@@ -113,9 +116,11 @@ void System::finish(const MayGoOn& may_go_on) {
       const Stopwatch watch;
       backend_.finish(may_go_on, [this](const Task& change) { change_map(change); });
       times_.add("full_bundle", watch.ms());
+      mapping_session_.tell_changes(true);
     });
   }
   if (map_whole_) note_map_size();
+  events_.end();
   error_.rethrow();
 }
 
@@ -134,73 +139,38 @@ System::Extracted System::extract(const RgbdImage& image) {
 }
 
 System::Tracked System::track(const Extracted& extracted) {
-  if (LocalMapPtr local_map = snapshots_.take()) tracker_.set_local_map(std::move(local_map));
+  if (extracted.begins_recording) begin_recording();
   const Stopwatch watch;
-  Tracked tracked;
-  tracked.mapping = mapping_;
-  TrackedFrame frame = track_or_relocalize(extracted, tracked);
-  tracked.epoch = snapshots_.epoch();
+  Tracked tracked = tracking_session_.track_or_relocalize(extracted.frame, mapping_);
   if (must_be_dropped(tracked)) {
-    tracker_.take_back_request();
+    tracking_session_.take_back_request();
     tracked.request.reset();
-    frame.is_keyframe = false;
-    ++totals_.dropped_requests;
+    tracked.frame.is_keyframe = false;
+    ++dropped_requests_;
   }
   const double ms = watch.ms();
   times_.add("track", ms);
   times_.add("frame", extracted.ms + ms);
-  frames_.append(frame);
-  if (on_frame_) call([&] { on_frame_(frame); });
+  poses_.append(tracked.frame);
+  tell(extracted, tracked, ms);
+  if (on_frame_) call([&] { on_frame_(tracked.frame); });
   return tracked;
+}
+
+void System::tell(const Extracted& extracted, const Tracked& tracked, double track_ms) {
+  if (tracked.lost) events_.publish(*tracked.lost);
+  if (tracked.found) events_.publish(*tracked.found);
+  events_.publish(FrameTracked{tracked.frame, extracted.ms, track_ms});
 }
 
 // Live input does not wait for mapping, but for the first keyframe: there is nothing else to track.
 bool System::must_be_dropped(const Tracked& tracked) {
-  return live_ && tracked.request && tracker_.has_local_map() && !tasks_.has_room();
-}
-
-TrackedFrame System::track_or_relocalize(const Extracted& extracted, Tracked& tracked) {
-  const FramePtr& frame = extracted.frame;
-  if (extracted.begins_sequence) begin_recording();
-  if (!tracker_.has_local_map()) {
-    if (!tracked.mapping) seeking_ = true;  // it must not begin a map
-    if (tracked.mapping && !map_begun_) seeking_ = false;
-  }
-  TrackedFrame result = not_found(*frame);
-  if (!seeking_) {
-    const RightOfWay::Claim claim(right_of_way_);
-    result = tracker_.track(frame, tracked.request);
-  }
-  if (result.state != TrackingState::kLost) {
-    map_begun_ = map_begun_ || tracked.request.has_value();
-    lost_frames_ = 0;
-    return result;
-  }
-  if (std::optional<TrackedFrame> found = find_place(frame, tracked.request)) {
-    lost_frames_ = 0;
-    seeking_ = false;
-    return *found;
-  }
-  if (can_begin_map(*frame)) ++lost_frames_;
-  if (lost_frames_ >= options_.new_map_after && tracked.mapping) {
-    go_on_elsewhere();
-    seeking_ = false;
-  }
-  return result;
-}
-
-TrackedFrame System::not_found(const Frame& frame) const {
-  TrackedFrame result;
-  result.index = frame.index;
-  result.stamp = frame.stamp;
-  result.state = TrackingState::kLost;
-  result.keypoints = static_cast<int>(frame.size());
-  return result;
+  return live_ && tracked.request && tracking_session_.has_local_map() && !tasks_.has_room();
 }
 
 void System::begin_recording() {
   // After the keyframes of the recording before, some of which may still wait for mapping.
-  Task task = [this, first = frames_.empty()] {
+  Task task = [this, first = poses_.frames().empty()] {
     if (!first) note_map_size();
     backend_.begin_recording();
   };
@@ -213,25 +183,8 @@ void System::begin_recording() {
   }
   // What was seen last says nothing about where the new recording begins.
   backend_.forget_seen();
-  seeking_ = map_begun_;
-  go_on_elsewhere();
-}
-
-void System::go_on_elsewhere() {
-  tracker_.restart();
-  snapshots_.begin_epoch();
-  lost_frames_ = 0;
-}
-
-std::optional<TrackedFrame> System::find_place(const FramePtr& frame,
-                                               std::optional<KeyframeRequest>& request) {
-  const RelocalizationAnswer answer = relocalize(*frame);
-  if (!answer.local_map) return std::nullopt;
-  const TrackedFrame tracked = tracker_.resume(
-      frame, answer.local_map, answer.report.world_from_camera, answer.report.points, request);
-  if (tracked.state != TrackingState::kTracking) return std::nullopt;
-  snapshots_.begin_epoch();  // what is on its way is of where tracking was before
-  return tracked;
+  tracking_session_.begin_recording();
+  events_.publish(RecordingBegun{recordings_++});
 }
 
 // In the thread that waits for it.
@@ -249,13 +202,6 @@ RelocalizationAnswer System::relocalize(const Frame& frame) {
   return answer;
 }
 
-// A covered lens or a bare wall is no reason to give up a map.
-bool System::can_begin_map(const Frame& frame) const {
-  const auto with_depth = std::count_if(frame.depths.begin(), frame.depths.end(),
-                                        [](float depth) { return depth > 0.0F; });
-  return with_depth >= options_.tracking.min_start_points;
-}
-
 void System::change_map(const Task& task) {
   const std::lock_guard lock(map_mutex_);
   map_whole_ = false;
@@ -263,50 +209,39 @@ void System::change_map(const Task& task) {
   map_whole_ = true;
 }
 
-void System::map_keyframe(const Tracked& tracked) {
-  const KeyframeRequest& request = *tracked.request;
-  if (!tracked.mapping) {
-    snapshots_.publish(tracked.epoch, backend_.follow(request));
-    return;
-  }
-  const Stopwatch insert_watch;
-  snapshots_.publish(tracked.epoch, backend_.insert(request));
-  if (request.reference == kNoId) {
-    roots_.push_back({request.frame->index, request.frame->stamp, backend_.report().keyframe});
-  }
-  times_.add("map_insert", insert_watch.ms());
-  const Stopwatch refine_watch;
-  snapshots_.publish(tracked.epoch, backend_.refine());
-  times_.add("map_refine", refine_watch.ms());
-  const Stopwatch loop_watch;
-  if (LocalMapPtr moved = backend_.close_loops()) {
-    snapshots_.publish(tracked.epoch, std::move(moved));
-  }
-  times_.add("loop_closing", loop_watch.ms());
-  count(backend_.report());
-  if (autosave_ && totals_.keyframes % autosave_keyframes_ == 0) {
-    call([this] { autosave_(map(), backend_.closed_loops()); });
-  }
+System::Task System::mapping_of(Tracked tracked) {
+  return [this, asked = std::move(tracked)] {
+    if (!asked.mapping) return mapping_session_.follow(*asked.request, asked.epoch);
+    mapping_session_.map_keyframe(*asked.request, asked.epoch);
+    autosave();
+  };
 }
 
-void System::count(const MappingReport& report) {
-  ++totals_.keyframes;
-  totals_.new_points += report.new_points;
-  totals_.triangulated_points += report.triangulated_points;
-  totals_.fused_points += report.fused_points;
-  totals_.culled_points += report.culled_points;
-  totals_.culled_keyframes += static_cast<int>(report.culled_keyframes.size());
-  totals_.bundle_keyframes += report.bundle_keyframes;
-  totals_.bundle_observations += report.bundle_observations;
-  totals_.outlier_observations += report.outlier_observations;
+void System::autosave() {
+  if (!autosave_ || mapping_session_.totals().keyframes % autosave_keyframes_ != 0) return;
+  call([this] { autosave_(map(), backend_.closed_loops()); });
+}
+
+WholeMap System::whole_map() {
+  const std::lock_guard lock(map_mutex_);
+  if (!map_whole_) return {};
+  backend_.record_changes(true);
+  mapping_session_.tell_changes(false);
+  return {events_.map_version(), dxslam::whole_map(map())};
+}
+
+MappingTotals System::mapping_totals() const {
+  MappingTotals totals = mapping_session_.totals();
+  totals.dropped_requests = dropped_requests_;
+  return totals;
 }
 
 void System::run_tracking() {
   while (std::optional<Extracted> extracted = extracted_.pop()) {
     Tracked tracked = track(*extracted);
     if (!tracked.request) continue;
-    const bool first = !tracker_.has_local_map();
-    if (!tasks_.push([this, asked = std::move(tracked)] { map_keyframe(asked); })) break;
+    const bool first = !tracking_session_.has_local_map();
+    if (!tasks_.push(mapping_of(std::move(tracked)))) break;
     // There is nothing to track against before the first keyframe is in the map.
     if (first && !snapshots_.wait()) break;
   }
@@ -329,12 +264,24 @@ void System::call(const std::function<void()>& callback) {
   if (callback_failures_.count++ == 0) callback_failures_.first = said;
 }
 
+void System::tell_failure() {
+  try {
+    error_.rethrow();
+  } catch (const std::exception& error) {
+    events_.publish(RunFailed{error.what()});
+  } catch (...) {
+    events_.publish(RunFailed{"something that is no exception"});
+  }
+  events_.end();
+}
+
 void System::guard(const std::function<void()>& body) {
   try {
     body();
   } catch (...) {
     error_.keep_current();
     close_queues();
+    tell_failure();
   }
 }
 
@@ -344,67 +291,16 @@ void System::close_queues() {
   snapshots_.stop();
 }
 
-std::vector<ComponentSummary> System::components() const {
-  std::vector<ComponentSummary> all(map().component_count());
-  for (std::size_t c = 0; c < all.size(); ++c) all[c].component = static_cast<std::uint32_t>(c);
-  for (const KeyframeId id : map().keyframe_ids()) ++all[map().keyframe(id).component].keyframes;
-  for (const PointId id : map().point_ids()) {
-    const KeyframeId seen_by = map().point(id).observations.front().keyframe;
-    ++all[map().keyframe(seen_by).component].points;
-  }
-  frames_.for_each([&](const TrackedFrame& frame) {
-    if (const auto component = component_of(frame)) ++all[*component].frames;
-  });
-  const auto joined = [](const ComponentSummary& c) { return c.keyframes == 0; };
-  all.erase(std::remove_if(all.begin(), all.end(), joined), all.end());
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return a.frames != b.frames ? a.frames > b.frames : a.keyframes > b.keyframes;
-  });
-  return all;
-}
-
-// A frame that began a map was tracked before there was a keyframe to hang on.
-KeyframeId System::reference_of(const TrackedFrame& frame) const {
-  if (frame.state != TrackingState::kTracking || frame.reference != kNoId) return frame.reference;
-  const auto began = std::find_if(roots_.begin(), roots_.end(), [&](const Root& root) {
-    return root.index == frame.index && root.stamp == frame.stamp;
-  });
-  return began == roots_.end() ? kNoId : began->keyframe;
-}
-
-std::optional<std::uint32_t> System::component_of(const TrackedFrame& frame) const {
-  if (frame.state != TrackingState::kTracking) return std::nullopt;
-  const KeyframeId reference = reference_of(frame);
-  if (reference == kNoId) return std::nullopt;
-  return map().keyframe(map().anchor_of(reference).keyframe).component;
-}
-
 Trajectory System::trajectory(std::optional<std::uint32_t> component) const {
-  const auto all = components();
-  if (all.empty()) return {};
-  const std::uint32_t wanted = component.value_or(all.front().component);
-  Trajectory trajectory;
-  frames_.for_each([&](const TrackedFrame& frame) {
-    if (component_of(frame) != wanted) return;
-    const Map::Anchor anchor = map().anchor_of(reference_of(frame));
-    trajectory.push_back({frame.stamp, map().keyframe(anchor.keyframe).world_from_camera *
-                                           anchor.anchor_from_camera *
-                                           frame.reference_from_camera});
-  });
-  return trajectory;
+  if (map().keyframe_count() == 0) return {};
+  return poses_.trajectory(map(), component ? *component : main_component());
 }
 
 Trajectory System::keyframe_trajectory(std::optional<std::uint32_t> component) const {
-  const auto all = components();
-  if (all.empty()) return {};
-  const std::uint32_t wanted = component.value_or(all.front().component);
-  Trajectory trajectory;
-  for (const KeyframeId id : map().keyframe_ids()) {
-    const Keyframe& keyframe = map().keyframe(id);
-    if (keyframe.component != wanted) continue;
-    trajectory.push_back({keyframe.frame->stamp, keyframe.world_from_camera});
-  }
-  return trajectory;
+  if (map().keyframe_count() == 0) return {};
+  return keyframe_poses(map(), component ? *component : main_component());
 }
+
+std::uint32_t System::main_component() const { return components().front().component; }
 
 }  // namespace dxslam

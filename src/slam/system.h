@@ -16,42 +16,28 @@
 #include "optimization/may_go_on.h"
 #include "slam/backend.h"
 #include "slam/bounded_queue.h"
+#include "slam/event_stream.h"
 #include "slam/first_error.h"
-#include "slam/frame_log.h"
+#include "slam/mapping_session.h"
 #include "slam/right_of_way.h"
 #include "slam/snapshot_exchange.h"
 #include "slam/stage_times.h"
 #include "slam/system_options.h"
-#include "tracking/tracker.h"
+#include "slam/tracked_poses.h"
+#include "slam/tracking_session.h"
 
 namespace dxslam {
-
-/// Counts over everything mapping did.
-struct MappingTotals {
-  std::int64_t keyframes = 0;
-  std::int64_t new_points = 0;
-  std::int64_t triangulated_points = 0;
-  std::int64_t fused_points = 0;
-  std::int64_t culled_points = 0;
-  std::int64_t culled_keyframes = 0;
-  std::int64_t bundle_keyframes = 0;  ///< moved by local bundle adjustment, summed over keyframes
-  std::int64_t bundle_observations = 0;   ///< in it
-  std::int64_t outlier_observations = 0;  ///< unbound by it
-  std::int64_t dropped_requests = 0;      ///< since mapping was busy (real time only)
-};
-
-/// Frames and keyframes whose poses are known relative to one another: one map of several.
-struct ComponentSummary {
-  std::uint32_t component = 0;
-  std::size_t keyframes = 0;
-  std::size_t points = 0;
-  std::size_t frames = 0;  ///< tracked in it
-};
 
 /// What the callbacks threw. They should not; it ends nothing, but is not forgotten either.
 struct CallbackFailures {
   int count = 0;
   std::string first;  ///< what it said
+};
+
+/// The map at one moment, for readers of the event stream who were not there from the start.
+struct WholeMap {
+  std::uint64_t map_version = 0;  ///< changes up to this one are in it
+  MapChanged map;                 ///< all of it, as added
 };
 
 /// How large the map was when a recording ended.
@@ -114,10 +100,18 @@ class System {
   /// Whether something went wrong in tracking or mapping: no image is taken any more. Any thread.
   bool has_failed() const { return error_.there_is_one(); }
 
+  /// What happens inside, from now on (observer.h); ends with finish() or an error. A reader that
+  /// is too slow loses the oldest messages, and nobody waits for it. Any thread.
+  SubscriptionPtr subscribe(std::size_t capacity = 1024) { return events_.subscribe(capacity); }
+  /// The map as it is now. Waits while the map is worked on. Any thread.
+  WholeMap whole_map();
+  /// For those who have something to tell as well: that the map was saved.
+  EventStream& events() { return events_; }
+
   /// Every frame given, in order. The ones that began a map have no reference.
-  const FrameLog& frames() const { return frames_; }
+  const FrameLog& frames() const { return poses_.frames(); }
   /// All maps there are, the one with most tracked frames first.
-  std::vector<ComponentSummary> components() const;
+  std::vector<ComponentSummary> components() const { return poses_.components(map()); }
   /// Poses of the frames tracked in one component, as the final map has them; of the first of
   /// components() unless said.
   Trajectory trajectory(std::optional<std::uint32_t> component = std::nullopt) const;
@@ -129,7 +123,7 @@ class System {
   const Backend& backend() const { return backend_; }
   /// One per recording (begin_sequence), in order.
   const std::vector<MapSize>& map_sizes() const { return map_sizes_; }
-  const MappingTotals& mapping_totals() const { return totals_; }
+  MappingTotals mapping_totals() const;
   const StageTimes& times() const { return times_; }
   const CallbackFailures& callback_failures() const { return callback_failures_; }
   const FeatureExtractor& extractor() const { return *extractor_; }
@@ -137,46 +131,28 @@ class System {
  private:
   struct Extracted {
     FramePtr frame;
-    bool begins_sequence = false;
+    bool begins_recording = false;
     double ms = 0.0;  // what extraction took
   };
   using Task = std::function<void()>;  // for the mapping thread
-  using Epoch = SnapshotExchange::Epoch;
-
-  struct Tracked {
-    std::optional<KeyframeRequest> request;
-    Epoch epoch = 0;       // of the request
-    bool mapping = false;  // or localization
-  };
-
-  /// The keyframe that a component began with, and its image.
-  struct Root {
-    std::int64_t index = 0;
-    double stamp = 0.0;
-    KeyframeId keyframe = kNoId;
-  };
+  using Tracked = TrackingSession::Result;
 
   Extracted extract(const RgbdImage& image);
   Tracked track(const Extracted& extracted);
-  TrackedFrame track_or_relocalize(const Extracted& extracted, Tracked& tracked);
-  TrackedFrame not_found(const Frame& frame) const;
   void begin_recording();
-  void go_on_elsewhere();
   bool must_be_dropped(const Tracked& tracked);
-  std::optional<TrackedFrame> find_place(const FramePtr& frame,
-                                         std::optional<KeyframeRequest>& request);
+  void tell(const Extracted& extracted, const Tracked& tracked, double track_ms);
+  Task mapping_of(Tracked tracked);
   void change_map(const Task& task);
-  void map_keyframe(const Tracked& tracked);
   RelocalizationAnswer relocalize(const Frame& frame);
-  bool can_begin_map(const Frame& frame) const;
-  void count(const MappingReport& report);
+  void autosave();
   void note_map_size();
-  KeyframeId reference_of(const TrackedFrame& frame) const;
-  std::optional<std::uint32_t> component_of(const TrackedFrame& frame) const;
+  std::uint32_t main_component() const;
 
   void run_tracking();
   void run_mapping();
   void call(const std::function<void()>& callback);
+  void tell_failure();
   void guard(const std::function<void()>& body);
   void close_queues();
   void end_threads();
@@ -185,22 +161,22 @@ class System {
   SystemOptions options_;
   std::unique_ptr<FeatureExtractor> extractor_;
   FrameCallback on_frame_;
-  Tracker tracker_;
   RightOfWay right_of_way_;  // of extraction and tracking over mapping
-  Backend backend_;
-  FrameLog frames_;
-  std::vector<Root> roots_;
-  std::vector<MapSize> map_sizes_;
-  MappingTotals totals_;
+  SnapshotExchange snapshots_;
+  EventStream events_;
   StageTimes times_;
+  TrackedPoses poses_;
+  Backend backend_;
+  MappingSession mapping_session_;
+  TrackingSession tracking_session_;
+  std::vector<MapSize> map_sizes_;
+  std::int64_t dropped_requests_ = 0;
+  int recordings_ = 0;  // begun
   MapCallback autosave_;
   int autosave_keyframes_ = 0;
   bool began_ = false;       // an image was given
   bool may_be_map_ = false;  // one was loaded, or an image was given while mapping
   bool next_begins_sequence_ = false;
-  bool seeking_ = false;    // where in the map the camera is, is not known
-  bool map_begun_ = false;  // as far as the tracking thread knows
-  int lost_frames_ = 0;     // in a row
   std::atomic<bool> mapping_{true};
 
   // Held while the map is changed; tracking takes it to relocalize.
@@ -209,7 +185,6 @@ class System {
 
   BoundedQueue<Extracted> extracted_;
   BoundedQueue<Task> tasks_;
-  SnapshotExchange snapshots_;
   std::atomic<bool> live_{false};
   FirstError error_;
   std::mutex callback_mutex_;

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#pragma once
+
+#include <cstdint>
+
+#include "slam/backend.h"
+#include "slam/event_stream.h"
+#include "slam/snapshot_exchange.h"
+#include "slam/stage_times.h"
+#include "slam/tracked_poses.h"
+
+namespace dxslam {
+
+/// Counts over everything mapping did.
+struct MappingTotals {
+  std::int64_t keyframes = 0;
+  std::int64_t new_points = 0;
+  std::int64_t triangulated_points = 0;
+  std::int64_t fused_points = 0;
+  std::int64_t culled_points = 0;
+  std::int64_t culled_keyframes = 0;
+  std::int64_t bundle_keyframes = 0;  ///< moved by local bundle adjustment, summed over keyframes
+  std::int64_t bundle_observations = 0;   ///< in it
+  std::int64_t outlier_observations = 0;  ///< unbound by it
+  std::int64_t dropped_requests = 0;      ///< since mapping was busy (real time only)
+};
+
+/// What mapping does with the keyframes that tracking asks for: works them into the map step by
+/// step, hands each new state back, and tells of it. Belongs to the mapping thread.
+class MappingSession {
+ public:
+  using Epoch = SnapshotExchange::Epoch;
+
+  /// All must outlive this.
+  MappingSession(Backend& backend, SnapshotExchange& snapshots, EventStream& events,
+                 StageTimes& times, TrackedPoses& poses)
+      : backend_(backend), snapshots_(snapshots), events_(events), times_(times), poses_(poses) {}
+
+  /// Local mapping and loop closing for a new keyframe.
+  void map_keyframe(const KeyframeRequest& request, Epoch epoch);
+  /// Localization only: the local map around the frame.
+  void follow(const KeyframeRequest& request, Epoch epoch);
+  /// Tells what has changed in the map since this was called last.
+  void tell_changes(bool is_correction);
+
+  const MappingTotals& totals() const { return totals_; }
+
+ private:
+  void tell_loops();
+  void count(const MappingReport& report);
+
+  Backend& backend_;
+  SnapshotExchange& snapshots_;
+  EventStream& events_;
+  StageTimes& times_;
+  TrackedPoses& poses_;
+  MappingTotals totals_;
+  std::size_t told_loops_ = 0;  // of all that the loop log ever had
+};
+
+/// The whole map as if it had just been added.
+MapChanged whole_map(const Map& map);
+
+}  // namespace dxslam

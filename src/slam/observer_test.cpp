@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The dxslam authors
+#include "slam/observer.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "slam/system.h"
+#include "slam/test_recording.h"
+
+namespace dxslam {
+namespace {
+
+SystemOptions options_of(bool deterministic) {
+  SystemOptions options;
+  options.deterministic = deterministic;
+  options.features = "recording";
+  options.loop_detection.max_distance_global = 0.2;
+  return options;
+}
+
+std::unique_ptr<System> make_system(bool deterministic, int broken_global = -1) {
+  return std::make_unique<System>(recording().camera(),
+                                  std::make_unique<RecordingExtractor>(-1, broken_global),
+                                  options_of(deterministic));
+}
+
+RgbdImage image_of(int index) { return recording().images()[static_cast<std::size_t>(index)]; }
+
+// What a reader of the stream knows of the map.
+class Mirror {
+ public:
+  void apply(const MapChanged& change) {
+    for (const KeyframeId id : change.removed_keyframes) ASSERT_EQ(keyframes_.erase(id), 1U);
+    for (const PointId id : change.removed_points) ASSERT_EQ(points_.erase(id), 1U);
+    for (const KeyframePose& k : change.added_keyframes) {
+      ASSERT_TRUE(keyframes_.emplace(k.id, k).second);
+    }
+    for (const PointPosition& p : change.added_points) {
+      ASSERT_TRUE(points_.emplace(p.id, p.position).second);
+    }
+    for (const KeyframePose& k : change.moved_keyframes) keyframes_.at(k.id) = k;
+    for (const PointPosition& p : change.moved_points) points_.at(p.id) = p.position;
+  }
+  /// Skips what is in `since` already.
+  void follow(const std::vector<MessagePtr>& messages, std::uint64_t since = 0) {
+    for (const MessagePtr& m : messages) {
+      const auto* change = std::get_if<MapChanged>(&m->event);
+      if (change != nullptr && m->map_version > since) apply(*change);
+    }
+  }
+  void expect_same(const Map& map) const {
+    ASSERT_EQ(keyframes_.size(), map.keyframe_count());
+    ASSERT_EQ(points_.size(), map.point_count());
+    for (const auto& [id, k] : keyframes_) {
+      EXPECT_EQ(k.world_from_camera.matrix(), map.keyframe(id).world_from_camera.matrix()) << id;
+      EXPECT_EQ(k.component, map.keyframe(id).component);
+      EXPECT_EQ(k.stamp, map.keyframe(id).frame->stamp);
+    }
+    for (const auto& [id, position] : points_) EXPECT_EQ(position, map.point(id).position) << id;
+  }
+
+ private:
+  std::map<KeyframeId, KeyframePose> keyframes_;
+  std::map<PointId, Eigen::Vector3d> points_;
+};
+
+std::vector<MessagePtr> read_all(Subscription& reader) {
+  std::vector<MessagePtr> messages;
+  while (MessagePtr m = reader.try_next()) messages.push_back(std::move(m));
+  return messages;
+}
+
+template <class Wanted>
+std::vector<Wanted> only(const std::vector<MessagePtr>& messages) {
+  std::vector<Wanted> found;
+  for (const MessagePtr& m : messages) {
+    if (const auto* event = std::get_if<Wanted>(&m->event)) found.push_back(*event);
+  }
+  return found;
+}
+
+TEST(Observer, ChangesAddUpToTheMap) {
+  for (const bool deterministic : {true, false}) {
+    const auto system = make_system(deterministic);
+    const SubscriptionPtr reader = system->subscribe(100000);
+    for (int i = 0; i < kFrames; ++i) system->process(image_of(i));
+    system->finish();
+    const std::vector<MessagePtr> messages = read_all(*reader);
+    EXPECT_EQ(reader->lost(), 0U);
+    EXPECT_TRUE(reader->has_ended());
+    Mirror mirror;
+    mirror.follow(messages);
+    mirror.expect_same(system->map());
+    std::uint64_t version = 0;
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+      EXPECT_EQ(messages[i]->number, messages.front()->number + i);
+      EXPECT_GE(messages[i]->map_version, version);
+      version = messages[i]->map_version;
+    }
+    EXPECT_EQ(only<FrameTracked>(messages).size(), static_cast<std::size_t>(kFrames));
+  }
+}
+
+TEST(Observer, WhoComesLateBeginsWithTheWholeMap) {
+  const auto system = make_system(false);
+  for (int i = 0; i < kFrames / 2; ++i) system->process(image_of(i));
+  const SubscriptionPtr reader = system->subscribe(100000);
+  const WholeMap whole = system->whole_map();
+  for (int i = kFrames / 2; i < kFrames; ++i) system->process(image_of(i));
+  system->finish();
+  Mirror mirror;
+  mirror.apply(whole.map);
+  mirror.follow(read_all(*reader), whole.map_version);
+  mirror.expect_same(system->map());
+}
+
+TEST(Observer, TellsOfLossPlaceAndRecordings) {
+  const auto system = make_system(true);
+  const SubscriptionPtr reader = system->subscribe(100000);
+  for (int i = 0; i < kFrames; ++i) system->process(image_of(i));
+  RgbdImage blind = image_of(0);
+  const std::int32_t nothing = -1;
+  blind.color = blind.color.clone();
+  std::memcpy(blind.color.data, &nothing, sizeof(nothing));
+  for (int i = 0; i < 3; ++i) {
+    blind.stamp = 100.0 + i;
+    system->process(blind);
+  }
+  RgbdImage again = image_of(kFrames / 2);
+  again.stamp = 200.0;
+  system->process(again);
+  system->begin_sequence();
+  again.stamp = 300.0;
+  system->process(again);
+  system->finish();
+  const std::vector<MessagePtr> messages = read_all(*reader);
+  const auto lost = only<TrackingLost>(messages);
+  ASSERT_EQ(lost.size(), 1U);
+  EXPECT_EQ(lost[0].stamp, 100.0);
+  EXPECT_EQ(lost[0].reason, LossReason::kNoPose);
+  const auto places = only<PlaceFound>(messages);
+  ASSERT_FALSE(places.empty());
+  EXPECT_GT(places.back().confidence, 0.5);
+  EXPECT_EQ(only<RecordingBegun>(messages).size(), 1U);
+  EXPECT_EQ(only<FrameTracked>(messages).back().frame.stamp, 300.0);
+}
+
+// Equal input gives equal output, whoever listens, and however slowly.
+TEST(Observer, AStuckReaderChangesNothing) {
+  const auto alone = make_system(true);
+  const auto watched = make_system(true);
+  const SubscriptionPtr stuck = watched->subscribe(1);
+  for (int i = 0; i < kFrames; ++i) {
+    alone->process(image_of(i));
+    watched->process(image_of(i));
+  }
+  alone->finish();
+  watched->finish();
+  EXPECT_GT(stuck->lost(), static_cast<std::uint64_t>(kFrames));
+  const Trajectory a = alone->trajectory();
+  const Trajectory b = watched->trajectory();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].world_from_camera.matrix(), b[i].world_from_camera.matrix());
+  }
+}
+
+TEST(Observer, AnErrorInsideIsTheLastMessage) {
+  const auto system = make_system(false, 1);
+  const SubscriptionPtr reader = system->subscribe(100000);
+  EXPECT_ANY_THROW({
+    for (int i = 0; i < kFrames; ++i) system->process(image_of(i));
+    system->finish();
+  });
+  EXPECT_ANY_THROW(system->finish());
+  const std::vector<MessagePtr> messages = read_all(*reader);
+  ASSERT_FALSE(messages.empty());
+  const auto* failed = std::get_if<RunFailed>(&messages.back()->event);
+  ASSERT_NE(failed, nullptr);
+  EXPECT_EQ(failed->what, "broken encoder");
+  EXPECT_TRUE(reader->has_ended());
+}
+
+}  // namespace
+}  // namespace dxslam
