@@ -184,6 +184,10 @@ OpenlorisResult read_openloris_result(const std::string& path) {
   return parser.finish();
 }
 
+FileKind openloris_kind() {
+  return kind_by_beginning("poses in OpenLORIS-Scene format", {"scene: "});
+}
+
 void write_openloris_result(const std::string& path, const OpenlorisResult& result) {
   check(result);
   std::string text = fmt::format("scene: {}\nframe: {}\n", result.scene, result.frame);

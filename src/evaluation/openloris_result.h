@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/trajectory.h"
+#include "io/primitives/output_file.h"
 
 namespace dxslam {
 
@@ -34,5 +35,8 @@ OpenlorisResult read_openloris_result(const std::string& path);
 
 /// Writes such a file, replaced atomically. Throws ContractError unless the invariants above hold.
 void write_openloris_result(const std::string& path, const OpenlorisResult& result);
+
+/// What write_openloris_result() writes.
+FileKind openloris_kind();
 
 }  // namespace dxslam

@@ -10,6 +10,11 @@
 
 namespace dxslam {
 
+FileKind svg_kind() {
+  return kind_by_beginning("an SVG picture of dxslam",
+                           {"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\""}, {".svg"});
+}
+
 std::string svg_begin(double width, double height) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "

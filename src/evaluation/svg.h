@@ -4,9 +4,14 @@
 
 #include <string>
 
+#include "io/primitives/output_file.h"
+
 namespace dxslam {
 
 // Parts of SVG pictures; coordinates in pixels, y downwards.
+
+/// Pictures that begin as those drawn here.
+FileKind svg_kind();
 
 /// Begins a white picture with the text classes title (20 px, bold), label and sub (14 px), tick
 /// (12 px) and halo (outlined in the colour of a plot). To be ended with "</svg>\n".

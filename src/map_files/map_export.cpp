@@ -9,16 +9,30 @@
 #include <filesystem>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "io/formats/ply_file.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/output_file.h"
 
 namespace dxslam {
 namespace {
 
 constexpr double kOftenSeen = 10.0;         // observations; the brightest colour
 constexpr double kColmapPixelCentre = 0.5;  // ours is 0
+
+// COLMAP's own files begin with other words.
+constexpr const char* kCameras = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
+constexpr const char* kImages = "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n";
+constexpr const char* kPoints = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n";
+
+// A JPEG with a comment, by which the pictures written here are told from a user's photos.
+constexpr std::string_view kJpegBegin = "\xFF\xD8";
+constexpr std::string_view kMarkedJpegBegin{
+    "\xFF\xD8\xFF\xFE\x00\x08"
+    "dxslam",
+    12};
 
 double seen_share(const MapPoint& p) {
   return std::min(1.0, static_cast<double>(p.observations.size()) / kOftenSeen);
@@ -45,7 +59,7 @@ std::string camera_text(const Camera& c) {
 }
 
 std::string cameras_text(const Rig& rig) {
-  std::string text = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
+  std::string text = kCameras;
   for (std::size_t i = 0; i < rig.size(); ++i) {
     text += fmt::format("{} {}\n", i + 1, camera_text(rig[static_cast<CameraId>(i)]));
   }
@@ -58,12 +72,29 @@ std::string image_name(const Keyframe& k, std::set<std::string>& taken) {
   return name;
 }
 
-void write_thumbnail(const std::filesystem::path& folder, const StoredMap& stored, KeyframeId id,
+// False where the keyframe has none.
+bool write_thumbnail(const std::filesystem::path& folder, const StoredMap& stored, KeyframeId id,
                      const std::string& name) {
-  if (id >= stored.thumbnails.size() || stored.thumbnails[id].empty()) return;
+  if (id >= stored.thumbnails.size() || stored.thumbnails[id].empty()) return false;
+  const std::string& picture = stored.thumbnails[id];
   make_folder(folder.string());
-  std::filesystem::path file = folder / name;
-  write_file_atomically(file.replace_extension(".jpg").string(), stored.thumbnails[id]);
+  const std::string path = (folder / name).replace_extension(".jpg").string();
+  require_kind_or_nothing(
+      path, kind_by_beginning("a picture of `dxslam map`", {std::string(kMarkedJpegBegin)}));
+  write_file_atomically(path,
+                        picture.starts_with(kJpegBegin)
+                            ? std::string(kMarkedJpegBegin) + picture.substr(kJpegBegin.size())
+                            : picture);
+  return true;
+}
+
+void require_colmap_target(const std::filesystem::path& model) {
+  for (const auto& [name, beginning] :
+       {std::pair("cameras.txt", kCameras), std::pair("images.txt", kImages),
+        std::pair("points3D.txt", kPoints)}) {
+    require_kind_or_nothing((model / name).string(),
+                            kind_by_beginning("a COLMAP file of dxslam", {beginning}));
+  }
 }
 
 void append_image(const Keyframe& k, const Camera& camera, const std::string& name,
@@ -136,9 +167,12 @@ void write_map_colmap(const std::string& folder, const StoredMap& stored) {
   namespace fs = std::filesystem;
   const Map& map = stored.map;
   for (std::uint32_t component = 0; component < map.component_count(); ++component) {
+    require_colmap_target(fs::path(folder) / std::to_string(component));
+  }
+  for (std::uint32_t component = 0; component < map.component_count(); ++component) {
     const fs::path model = fs::path(folder) / std::to_string(component);
     make_folder(model.string());
-    std::string images = "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n# X Y POINT3D_ID ...\n";
+    std::string images = fmt::format("{}# X Y POINT3D_ID ...\n", kImages);
     std::set<std::string> names;
     for (const KeyframeId id : map.keyframe_ids()) {
       const Keyframe& k = map.keyframe(id);
@@ -147,7 +181,7 @@ void write_map_colmap(const std::string& folder, const StoredMap& stored) {
       append_image(k, map.camera_of(id), name, images);
       write_thumbnail(model / "thumbnails", stored, id, name);
     }
-    std::string points = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n";
+    std::string points = kPoints;
     for (const PointId id : map.point_ids()) {
       const MapPoint& p = map.point(id);
       if (component_of(map, p) == component) append_point(map, p, points);
@@ -156,6 +190,15 @@ void write_map_colmap(const std::string& folder, const StoredMap& stored) {
     write_file_atomically((model / "images.txt").string(), images);
     write_file_atomically((model / "points3D.txt").string(), points);
   }
+}
+
+std::size_t write_map_thumbnails(const std::string& folder, const StoredMap& stored) {
+  make_folder(folder);
+  std::size_t written = 0;
+  for (KeyframeId id = 0; id < stored.thumbnails.size(); ++id) {
+    written += write_thumbnail(folder, stored, id, fmt::format("{:06d}", id)) ? 1 : 0;
+  }
+  return written;
 }
 
 }  // namespace dxslam

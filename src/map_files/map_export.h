@@ -8,6 +8,8 @@
 
 namespace dxslam {
 
+// Nothing here replaces a file of another kind: InputError.
+
 /// Points coloured by how often they were seen, and the keyframes' centres in the order of their
 /// ids, as binary PLY (io/ply_file.h). Components have worlds of their own: with several, take one
 /// a file, or all (`component` kNoId) on top of one another. Throws InputError if the file cannot
@@ -23,5 +25,8 @@ void write_map_ply(const std::string& path, const Map& map, std::uint32_t compon
 /// place of `.png`. Throws InputError if the files
 /// cannot be written.
 void write_map_colmap(const std::string& folder, const StoredMap& stored);
+
+/// The pictures of the keyframes, named by their ids. Returns how many there are.
+std::size_t write_map_thumbnails(const std::string& folder, const StoredMap& stored);
 
 }  // namespace dxslam

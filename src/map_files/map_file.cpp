@@ -5,15 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/output_file.h"
 #include "io/primitives/text_file.h"
 #include "map_files/file_bytes.h"
 #include "map_files/map_limits.h"
@@ -22,6 +22,8 @@
 
 namespace dxslam {
 namespace {
+
+constexpr std::size_t kLongestInLock = 200;  // bytes of a map's name in that of its lock
 
 FileBytes read_bytes(const std::string& path) {
   return FileBytes(
@@ -125,19 +127,9 @@ std::string features_of(const MapHeader& header) {
                      header.traits.binary ? "bytes" : "floats");
 }
 
-// A mistyped name must not cost a photo. An empty file is what mktemp makes.
-void require_map_or_nothing(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return;
-  std::array<char, 8> start{};
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw InputError(fmt::format("{}: cannot be read, expected a map or a new name", path));
-  file.read(start.data(), start.size());
-  const std::string_view bytes(start.data(), static_cast<std::size_t>(file.gcount()));
-  if (bytes.empty() || begins_like_a_map(bytes)) return;
-  throw InputError(
-      fmt::format("{}: is no map and is not replaced, expected a map or a new name", path));
+const FileKind& map_kind() {
+  static const FileKind kind{"a map", begins_like_a_map};
+  return kind;
 }
 
 }  // namespace
@@ -166,9 +158,25 @@ MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
   return snapshot;
 }
 
-void require_map_target(const std::string& path) {
-  require_map_or_nothing(path);
-  require_writable(path);
+void require_map_target(const std::string& path) { require_target(path, map_kind()); }
+
+std::unique_ptr<FileLock> lock_map_target(const std::string& path) {
+  namespace fs = std::filesystem;
+  require_map_target(path);
+  std::error_code error;
+  const fs::path target = canonical_target(path);
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) return nullptr;
+  const std::string name = "." + target.filename().string().substr(0, kLongestInLock) + ".lock";
+  try {
+    return std::make_unique<FileLock>(
+        (target.parent_path() / name).string(),
+        fmt::format(
+            "{}: another process is about to save its map there, expected a file of its own "
+            "for each",
+            path));
+  } catch (const std::system_error& e) {
+    throw InputError(fmt::format("{}: cannot be locked: {}", path, e.code().message()));
+  }
 }
 
 void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFileOptions& options) {
@@ -181,7 +189,7 @@ void save_map(const std::string& path, const MapSnapshot& snapshot, const MapFil
   const DescriptorCoding floats =
       options.exact_descriptors ? DescriptorCoding::kFloat32 : DescriptorCoding::kInt8;
   const DescriptorCoding coding = traits.binary ? DescriptorCoding::kBytes : floats;
-  require_map_or_nothing(path);
+  require_kind_or_nothing(path, map_kind());
   SectionWriter file(expected_size(snapshot, coding));
   write_header(snapshot.header, snapshot.parts.rig, file);
   write_cameras(snapshot.parts.rig, file);

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/features.h"
 #include "core/se3.h"
+#include "io/primitives/file_lock.h"
 #include "map/map_parts.h"
 
 namespace dxslam {
@@ -62,6 +64,9 @@ void save_map(const std::string& path, const MapSnapshot& snapshot,
 /// permissions, and for a file that is there and is no map, which save_map() does not replace.
 /// Changes nothing.
 void require_map_target(const std::string& path);
+/// The same, and takes `path` for the maps that this process saves there, as long as what is
+/// returned lives: throws InputError if another process has it. Nothing for a pipe or terminal.
+std::unique_ptr<FileLock> lock_map_target(const std::string& path);
 
 /// A map as it was saved.
 struct StoredMap {

@@ -11,6 +11,8 @@
 namespace dxslam {
 namespace {
 
+constexpr std::string_view kMemberMark = "PK\x03\x04";
+constexpr std::size_t kMemberHeader = 30;  // bytes before the name of the first member
 constexpr std::size_t kNpyAlignment = 64;
 constexpr std::size_t kLargestArchive = 0xFFFFFFFFU;
 constexpr std::uint32_t kDosEpoch = 0x00210000U;  // 1980-01-01 0:00: the same bytes every time
@@ -83,6 +85,13 @@ void NpzWriter::add_raw(const std::string& name, const std::vector<std::size_t>&
   members_.push_back({name + ".npy", std::move(bytes)});
 }
 
+FileKind NpzWriter::kind(std::string name, const std::string& first_array) {
+  return {std::move(name), [member = first_array + ".npy"](std::string_view head) {
+            return head.starts_with(kMemberMark) && head.size() > kMemberHeader &&
+                   head.substr(kMemberHeader).starts_with(member);
+          }};
+}
+
 void NpzWriter::write(const std::string& path) const {
   std::string archive;
   std::string directory;
@@ -105,7 +114,7 @@ void NpzWriter::write(const std::string& path) const {
     append(fields, static_cast<std::uint32_t>(member.name.size()), 2);
     append(fields, 0, 2);  // extra field
 
-    append(archive, 0x04034B50U, 4);
+    archive += kMemberMark;
     archive += fields + member.name + member.bytes;
     append(directory, 0x02014B50U, 4);
     append(directory, 20, 2);  // version made by

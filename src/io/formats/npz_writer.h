@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/primitives/output_file.h"
+
 namespace dxslam {
 
 /// Collects named arrays and writes them as a NumPy archive that numpy.load reads: a zip file of
@@ -29,6 +31,8 @@ class NpzWriter {
 
   /// Writes the archive atomically; throws InputError if that fails.
   void write(const std::string& path) const;
+  /// Archives that begin with this array.
+  static FileKind kind(std::string name, const std::string& first_array);
 
  private:
   struct Member {

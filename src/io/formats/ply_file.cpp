@@ -14,6 +14,8 @@ namespace dxslam {
 namespace {
 
 constexpr Rgb kKeyframeColor{220, 30, 30};
+constexpr const char* kBeginning =
+    "ply\nformat binary_little_endian 1.0\ncomment metres, world frame";
 
 // The bytes as they are in memory: the program is built for little-endian machines only.
 template <class Value>
@@ -45,6 +47,8 @@ Rgb color_of_score(double score) {
   return color;
 }
 
+FileKind ply_kind() { return kind_by_beginning("a PLY file of dxslam", {kBeginning}); }
+
 void write_ply(const std::string& path, const std::vector<PlyPoint>& points,
                const std::vector<Eigen::Vector3d>& keyframe_centres) {
   std::string vertices;
@@ -66,11 +70,11 @@ void write_ply(const std::string& path, const std::vector<PlyPoint>& points,
     ++centres;
   }
   const std::string header = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment metres, world frame; the last {} vertices are "
-      "keyframe centres\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "{}; the last {} vertices are keyframe centres\nelement vertex {}\nproperty float "
+      "x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nelement edge {}\n"
       "property int vertex1\nproperty int vertex2\nend_header\n",
-      centres, count + centres, centres == 0 ? 0 : centres - 1);
+      kBeginning, centres, count + centres, centres == 0 ? 0 : centres - 1);
   write_file_atomically(path, header + vertices + edges);
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/primitives/output_file.h"
+
 namespace dxslam {
 
 using Rgb = std::array<std::uint8_t, 3>;
@@ -27,5 +29,8 @@ Rgb color_of_score(double score);
 /// Written atomically; throws InputError if that fails.
 void write_ply(const std::string& path, const std::vector<PlyPoint>& points,
                const std::vector<Eigen::Vector3d>& keyframe_centres);
+
+/// What write_ply() writes; not other PLY files.
+FileKind ply_kind();
 
 }  // namespace dxslam

@@ -18,11 +18,18 @@
 namespace dxslam {
 namespace {
 
-constexpr const char* kHeader = "# timestamp tx ty tz qx qy qz qw\n";
+constexpr std::string_view kHeader = "# timestamp tx ty tz qx qy qz qw\n";
 constexpr const char* kExpected = "a trajectory in TUM format (stamp tx ty tz qx qy qz qw)";
 constexpr double kQuaternionTolerance = 0.01;
 
 }  // namespace
+
+FileKind trajectory_kind() {
+  return {"a trajectory of dxslam", [](std::string_view head) {
+            // A full disk or a kill may have cut the file that grows.
+            return head.starts_with(kHeader) || kHeader.starts_with(head);
+          }};
+}
 
 StampedPose parse_tum_pose(const std::string& path, const TextRow& row) {
   static constexpr const char* kColumns[] = {"stamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
@@ -87,7 +94,7 @@ std::string format_pose(const StampedPose& pose) {
 }
 
 void write_trajectory(const std::string& path, const Trajectory& trajectory) {
-  std::string text = kHeader;
+  std::string text(kHeader);
   for (const StampedPose& pose : trajectory) text += format_pose(pose) + "\n";
   write_file_atomically(path, text);
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/trajectory.h"
+#include "io/primitives/output_file.h"
 #include "io/primitives/text_file.h"
 
 namespace dxslam {
@@ -53,6 +54,9 @@ std::string format_pose(const StampedPose& pose);
 
 /// The whole file, replaced atomically.
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
+
+/// What write_trajectory() and TrajectoryWriter write; not other files in TUM format.
+FileKind trajectory_kind();
 
 /// Writes a trajectory while it grows. Each pose is handed to the system at once, so all appended
 /// poses survive a crash of the program. One thread at a time.

@@ -36,18 +36,6 @@ std::atomic<bool> waits_for_readers{true};
   throw InputError(fmt::format("{}: cannot be written: {}", path, reason));
 }
 
-// Behind a link it is the file that is replaced, not the link, also where that file is missing.
-std::string target_of(const std::string& path) {
-  fs::path target = path;
-  std::error_code error;
-  for (int links = 0; links < kMostLinks && fs::is_symlink(target, error); ++links) {
-    const fs::path next = fs::read_symlink(target, error);
-    if (error) break;
-    target = next.is_absolute() ? next : target.parent_path() / next;
-  }
-  return target.string();
-}
-
 std::string folder_of(const std::string& path) {
   const std::string folder = fs::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
@@ -126,6 +114,17 @@ void require_replaceable(const std::string& path, const struct stat& status) {
 
 }  // namespace
 
+std::string target_behind_links(const std::string& path) {
+  fs::path target = path;
+  std::error_code error;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(target, error); ++links) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) break;
+    target = next.is_absolute() ? next : target.parent_path() / next;
+  }
+  return target.string();
+}
+
 void write_file_atomically(const std::string& path, std::string_view bytes) {
   const struct stat status = status_of(path);
   if (is_stream(path, status)) {
@@ -134,7 +133,7 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
   }
   const std::shared_lock lock(files_being_written());
   require_replaceable(path, status);
-  const std::string target = target_of(path);
+  const std::string target = target_behind_links(path);
   try {
     TemporaryFile file(target);
     if (status.st_mode != 0) file.take_rights_of(status);
@@ -154,7 +153,7 @@ void require_writable(const std::string& path) {
   }
   require_replaceable(path, status);
   try {
-    TemporaryFile file(target_of(path));
+    TemporaryFile file(target_behind_links(path));
   } catch (const std::system_error& e) {
     fail(path, e.code().value());
   }
@@ -176,7 +175,7 @@ void make_folder(const std::string& folder) {
 }
 
 void remove_stale_temporaries(const std::string& path) {
-  const std::string target = target_of(path);
+  const std::string target = target_behind_links(path);
   remove_temporaries_in(folder_of(target), fs::path(target).filename().string());
 }
 

@@ -15,6 +15,9 @@ namespace dxslam {
 /// the reason: missing folder, no permission, full disk, a pipe without a reader. Any thread.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
+/// The file that is replaced: `path`, or what this link leads to, also where that is missing.
+std::string target_behind_links(const std::string& path);
+
 /// Throws what write_file_atomically() would for missing folders and permissions. Changes nothing.
 void require_writable(const std::string& path);
 
