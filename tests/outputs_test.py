@@ -173,7 +173,8 @@ class LastResults(Outputs):
         self.ends(dxslam("lifelong", self.recording, "--features", "orb", "--out", self.out), 0)
         self.assertEqual(names(self.out),
                          {"notes.txt", "online_1.txt", "dxslam_scene.txt", "lifelong.json"})
-        (self.out / "trajectory_map1.txt").write_text("# of an earlier run\n")
+        (self.out / "trajectory_map1.txt").write_text(
+            "# timestamp tx ty tz qx qy qz qw\n")
         self.ends(self.run_orb("--out", self.out), 0)
         self.assertEqual(names(self.out), RESULTS | {"notes.txt"})
 
@@ -291,6 +292,17 @@ class FailedOutputs(Outputs):
         self.assertGreater(len(poses(self.out / "trajectory.txt")), FRAMES // 2)
         self.assertIn("keyframes.txt", names(self.out))
         self.assertFalse((self.folder / "m.dxmap").exists())
+        self.assertIn("results, as far as they could be written, in", done.stdout)
+
+    def test_a_failure_is_said_once(self):
+        limited = f"ulimit -f 0; exec {PROGRAM} run {self.recording} --features orb --out {self.out}"
+        done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, timeout=TIMEOUT)
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        about = [line for line in done.stderr.splitlines() if "out/trajectory.txt" in line]
+        self.assertEqual(len(about), len(set(about)), done.stderr)
+        self.assertLessEqual(len(about), 2, done.stderr)
+        self.assertIn("the run goes on", about[0])
 
 
 class InnerErrors(Outputs):

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "apps/process.h"
+#include "apps/recording_report.h"
 #include "core/error.h"
 #include "features/data_directory.h"
 #include "features/extractor_factory.h"
@@ -114,9 +115,13 @@ class Experiment {
     }
   }
 
-  void process(const cv::Mat& image, std::uint32_t frame, const PlaceExclusion& excluded) {
+  void extract(const cv::Mat& image, std::uint32_t frame) {
     if (orb_) orb_->extract(image, frame);
     if (hf_) hf_->extract(image, frame);
+  }
+
+  /// The frame extracted last.
+  void ask(std::uint32_t frame, const PlaceExclusion& excluded) {
     const bool two_passes = settings_.second_pass_from.has_value();
     const bool second = two_passes && frame >= *settings_.second_pass_from;
     if (!two_passes || second) {
@@ -215,26 +220,35 @@ LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& s
   const LowLight low_light(settings.low_light_gain > 0.0 ? settings.low_light_gain
                                                          : LowLight::kDefaultGain);
   std::vector<std::optional<DepthView>> views(sequence.size());
+  std::vector<SkippedFrame> failed;
   std::size_t total = (sequence.size() + settings.stride - 1) / settings.stride;
   if (settings.max_frames > 0) total = std::min(total, settings.max_frames);
   for (std::size_t k = 0; k < total; ++k) {
     const std::size_t i = k * settings.stride;
-    std::optional<RgbdImage> image = sequence.read(i);
-    if (stop_requested()) break;
     progress(k + 1, total);
-    if (!image) continue;
-    if (settings.low_light_from && i >= *settings.low_light_from) {
-      image->color = low_light.apply(image->color, image->index);
-    }
-    const StampedPose* pose = pose_at(sequence.ground_truth(), sequence.stamp(i));
-    if (pose != nullptr && !image->depth.empty()) {
-      views[i].emplace(image->depth, sequence.camera(), pose->world_from_camera);
-    }
+    bool extracted = false;
+    const auto failure = attempt_image(i, [&] {
+      std::optional<RgbdImage> image = sequence.read(i);
+      if (!image || stop_requested()) return;
+      if (settings.low_light_from && i >= *settings.low_light_from) {
+        image->color = low_light.apply(image->color, image->index);
+      }
+      const StampedPose* pose = pose_at(sequence.ground_truth(), sequence.stamp(i));
+      if (pose != nullptr && !image->depth.empty()) {
+        views[i].emplace(image->depth, sequence.camera(), pose->world_from_camera);
+      }
+      experiment.extract(image->color, static_cast<std::uint32_t>(i));
+      extracted = true;
+    });
+    if (failure) failed.push_back(*failure);
+    if (stop_requested()) break;
+    if (!extracted) continue;
     const double latest = sequence.stamp(i) - settings.poses.window;
-    experiment.process(image->color, static_cast<std::uint32_t>(i),
-                       [&](std::uint32_t place) { return sequence.stamp(place) > latest; });
+    experiment.ask(static_cast<std::uint32_t>(i),
+                   [&](std::uint32_t place) { return sequence.stamp(place) > latest; });
   }
   LoopExperiment result = experiment.take_result();
+  result.failed = std::move(failed);
   result.views = std::move(views);
   return result;
 }

@@ -58,12 +58,13 @@ struct LoopExperiment {
   std::vector<double> orb_ms;
   /// By frame of the recording; nothing without depth or pose, or where the image was not used.
   std::vector<std::optional<DepthView>> views;
+  std::vector<SkippedFrame> failed;  ///< images whose features could not be extracted
 };
 
 /// Asks every detector for every image, then makes the image a place. Views less than
-/// `poses.window` seconds old are never found. Images that cannot be read are left out.
-/// `progress(done, total)` is called after each image. Ends early at a stop
-/// (process.h).
+/// `poses.window` seconds old are never found. Images that cannot be read or
+/// worked on are left out. `progress(done, total)` is called before each image. Ends early at a
+/// stop (process.h).
 LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& sequence,
                                    const std::function<void(std::size_t, std::size_t)>& progress);
 

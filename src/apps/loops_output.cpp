@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "evaluation/statistics.h"
+#include "evaluation/svg.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
 
@@ -141,8 +142,21 @@ std::vector<NamedCurve> judge_methods(const LoopExperiment& experiment, const Lo
 }
 
 ResultFiles loop_result_files() {
-  return {
-      {"candidates.csv", "pr.csv", "pr.svg", "summary.json"}, {"summary.json"}, {"summary.json"}};
+  return {{{"candidates.csv", kind_by_beginning("a table of `dxslam loops`", {"query,match,"})},
+           {"pr.csv", kind_by_beginning("a curve of `dxslam loops`", {"confidence,precision,"})},
+           {"pr.svg", svg_kind()},
+           {"summary.json", json_kind("a summary of `dxslam loops`", {"sequence", "method"})}},
+          {"summary.json"},
+          {"summary.json"}};
+}
+
+void require_loop_targets(const std::string& out, const std::vector<std::string>& methods) {
+  if (methods.size() < 2) return;
+  for (const std::string& method : methods) {
+    for (const ResultFile& file : loop_result_files().all) {
+      require_kind_or_nothing((fs::path(out) / method / file.name).string(), file.kind);
+    }
+  }
 }
 
 void write_loop_results(OutputSteps& steps, ResultFolder& out, const LoopSettings& settings,

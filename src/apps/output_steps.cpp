@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <utility>
 
 #include "apps/commands.h"
 #include "apps/console.h"
@@ -18,20 +20,33 @@ bool OutputSteps::run(const std::function<void()>& write) {
     write();
     return true;
   } catch (const InputError& e) {
-    failures_.emplace_back(e.what());
+    keep(e.what());
   } catch (const std::filesystem::filesystem_error& e) {
-    failures_.push_back(fmt::format("{}: {}", e.path1().string(), e.code().message()));
+    keep(fmt::format("{}: {}", e.path1().string(), e.code().message()));
   } catch (const std::exception& e) {
-    failures_.push_back(fmt::format("internal error: {}", e.what()));
+    keep(fmt::format("internal error: {}", e.what()));
     bug_ = true;
   }
   return false;
+}
+
+void OutputSteps::keep(std::string failure) {
+  if (std::find(failures_.begin(), failures_.end(), failure) != failures_.end()) return;
+  failures_.push_back(std::move(failure));
+}
+
+void OutputSteps::tell_place(const std::string& folder) const {
+  print("results{} in {}\n", failures_.empty() ? "" : ", as far as they could be written,", folder);
 }
 
 int OutputSteps::report(int code) const {
   for (const std::string& failure : failures_) warn("{}", failure);
   if (bug_) return kInternalError;
   return failures_.empty() ? code : kBadInput;
+}
+
+void OutputSteps::end_command() const {
+  if (const int code = report(kSuccess); code != kSuccess) throw CLI::RuntimeError(code);
 }
 
 }  // namespace dxslam::apps

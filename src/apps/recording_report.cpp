@@ -45,6 +45,17 @@ void print_recording(const RgbdSequence& recording) {
        c.depth_factor, facts.median_depth, 100.0 * facts.depth_share);
 }
 
+std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function<void()>& work) {
+  try {
+    work();
+    return std::nullopt;
+  } catch (const std::exception& e) {
+    std::string reason = e.what();
+    while (!reason.empty() && reason.back() == '\n') reason.pop_back();  // OpenCV's end so
+    return SkippedFrame{index, reason};
+  }
+}
+
 std::vector<SkippedFrame> all_skipped(const RgbdSequence& recording,
                                       const std::vector<SkippedFrame>& failed) {
   std::vector<SkippedFrame> all = recording.skipped();

@@ -2,8 +2,11 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "core/camera.h"
 #include "core/sequence.h"
@@ -12,6 +15,9 @@
 
 namespace dxslam::apps {
 
+/// Calls `work`, which reads an image and works on it. What it throws concerns this image alone:
+/// returned is why it was skipped.
+std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function<void()>& work);
 /// Frames that could not be read, and `failed` ones, in order.
 std::vector<SkippedFrame> all_skipped(const RgbdSequence& recording,
                                       const std::vector<SkippedFrame>& failed);

@@ -13,7 +13,11 @@
 #include "apps/console.h"
 #include "apps/system_setup.h"
 #include "core/error.h"
+#include "evaluation/openloris_result.h"
+#include "evaluation/svg.h"
 #include "features/extractor_factory.h"
+#include "io/formats/ply_file.h"
+#include "io/formats/trajectory_file.h"
 
 namespace dxslam::apps {
 namespace {
@@ -24,17 +28,21 @@ constexpr int kThumbnailsTidied = 100;  // keyframes between two times that old 
 
 // Everything that `run` and `lifelong` write into --out: the one replaces what the other wrote.
 ResultFiles result_files() {
-  return {{"trajectory.txt", "trajectory_online.txt", "trajectory_map[0-9]*.txt", "keyframes.txt",
-           "map.ply", "trajectory.svg", "summary.json", "online_[0-9]*.txt", "dxslam_*.txt",
-           "lifelong.json"},
-          {"summary.json", "lifelong.json"},
-          {"trajectory.txt", "online_[0-9]*.txt"}};
-}
-
-// OpenCV's sentences end with one.
-std::string without_line_end(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
+  ResultFiles files;
+  for (const char* name : {"trajectory.txt", "trajectory_online.txt", "trajectory_map[0-9]*.txt",
+                           "keyframes.txt", "online_[0-9]*.txt"}) {
+    files.all.push_back({name, trajectory_kind()});
+  }
+  files.all.push_back({"map.ply", ply_kind()});
+  files.all.push_back({"trajectory.svg", svg_kind()});
+  files.all.push_back({"dxslam_*.txt", openloris_kind()});
+  files.all.push_back(
+      {"summary.json", json_kind("a summary of `dxslam run`", {"version", "sequence"})});
+  files.all.push_back(
+      {"lifelong.json", json_kind("a table of `dxslam lifelong`", {"sequence", "frames"})});
+  files.last = {"summary.json", "lifelong.json"};
+  files.content = {"trajectory.txt", "online_[0-9]*.txt"};
+  return files;
 }
 
 // Something that is loaded in a thread of its own, for which nobody waits after a stop.
@@ -78,12 +86,12 @@ Session::Session(const RunSettings& settings)
 
 void Session::claim_targets() {
   if (!settings_.out.empty()) folder_.emplace(settings_.out, result_files());
-  if (!settings_.map_out.empty()) require_map_target(settings_.map_out);  // may lie in the folder
   if (folder_ && !settings_.map_out.empty() && folder_->claims(settings_.map_out)) {
     throw InputError(
         fmt::format("--map-out {}: is the place of a result of --out {}, expected another name",
                     settings_.map_out, settings_.out));
   }
+  if (!settings_.map_out.empty()) map_lock_ = lock_map_target(settings_.map_out);
   unsaved_.emplace();
 }
 
@@ -148,11 +156,8 @@ void Session::run(const std::function<void()>& feed) {
 
 bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,
                       const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const std::exception& e) {
-    if (!system_->has_failed()) failed.push_back({index, without_line_end(e.what())});
-  }
+  const auto failure = attempt_image(index, work);
+  if (failure && !system_->has_failed()) failed.push_back(*failure);
   return !stop_requested() && !system_->has_failed();
 }
 

@@ -73,6 +73,7 @@ class Session {
   RunSettings settings_;
   SystemOptions options_;
   std::optional<ResultFolder> folder_;
+  std::unique_ptr<FileLock> map_lock_;  // after the folder, in which it may lie
   FirstPoseReport first_pose_;
   std::optional<Thumbnails> thumbnails_;
   std::optional<AutoSaver> saver_;

@@ -8,15 +8,18 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/command_files.h"
 #include "apps/commands.h"
 #include "apps/commands/eval_openloris.h"
 #include "apps/console.h"
+#include "apps/output_steps.h"
 #include "apps/statistics_json.h"
 #include "apps/trajectory_pair.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "evaluation/ate.h"
 #include "evaluation/rpe.h"
+#include "evaluation/svg.h"
 #include "evaluation/time_offset.h"
 #include "evaluation/trajectory_svg.h"
 #include "io/formats/trajectory_reader.h"
@@ -55,8 +58,16 @@ void print_row(const std::string& label, const ErrorStatistics& s) {
         s.mean, s.median, s.std, s.min, s.max, s.count);
 }
 
-void write_json(const std::string& path, const nlohmann::ordered_json& report) {
-  if (!path.empty()) write_file_atomically(path, to_json_text(report));
+// Before anything is read.
+void require_targets(const EvalArguments& arguments) {
+  CommandFiles files({arguments.files.truth, arguments.files.estimate});
+  files.writes("--json", arguments.json, report_kind());
+  files.writes("--plot", arguments.plot, svg_kind());
+}
+
+void write_json(OutputSteps& steps, const std::string& path, const nlohmann::ordered_json& report) {
+  if (path.empty()) return;
+  steps.run([&] { write_file_atomically(path, to_json_text(report)); });
 }
 
 TrajectoryPair load_pair(const EvalArguments& arguments) {
@@ -104,6 +115,7 @@ void require_pairs(const EvalArguments& arguments, const TrajectoryPair& pair, d
 }
 
 void evaluate_ate_command(const EvalArguments& arguments) {
+  require_targets(arguments);
   TrajectoryPair pair = load_pair(arguments);
   const std::optional<double> offset = correct_clock(arguments, pair);
   if (offset) require_pairs(arguments, pair, *offset);
@@ -118,27 +130,34 @@ void evaluate_ate_command(const EvalArguments& arguments) {
   print("{} of {} estimated poses matched to {} true poses, alignment {}{}\n", report.pairs.size(),
         estimate.size(), truth.size(), alignment,
         alignment == "sim3" ? fmt::format(", scale {:.6f}", scale) : "");
-  write_json(arguments.json, {{"metric", "ate"},
-                              {"unit", "m"},
-                              {"alignment", alignment},
-                              {"max_difference_s", max_difference(arguments)},
-                              {"time_offset_s", offset ? nlohmann::ordered_json(*offset)
-                                                       : nlohmann::ordered_json(nullptr)},
-                              {"truth_poses", truth.size()},
-                              {"estimate_poses", estimate.size()},
-                              {"scale", scale},
-                              {"position", statistics_json(report.position)}});
-  if (arguments.plot.empty()) return;
-  const std::string title = std::filesystem::path(arguments.files.estimate).filename().string();
-  write_file_atomically(
-      arguments.plot,
-      draw_trajectory_svg(
-          transformed(estimate, report.truth_from_estimate), truth, title,
-          fmt::format("ATE {:.4f} m rmse, {:.4f} m max over {} poses, alignment {}",
-                      report.position.rmse, report.position.max, report.pairs.size(), alignment)));
+  OutputSteps steps;
+  write_json(steps, arguments.json,
+             {{"metric", "ate"},
+              {"unit", "m"},
+              {"alignment", alignment},
+              {"max_difference_s", max_difference(arguments)},
+              {"time_offset_s",
+               offset ? nlohmann::ordered_json(*offset) : nlohmann::ordered_json(nullptr)},
+              {"truth_poses", truth.size()},
+              {"estimate_poses", estimate.size()},
+              {"scale", scale},
+              {"position", statistics_json(report.position)}});
+  if (!arguments.plot.empty()) {
+    const std::string title = std::filesystem::path(arguments.files.estimate).filename().string();
+    const std::string subtitle =
+        fmt::format("ATE {:.4f} m rmse, {:.4f} m max over {} poses, alignment {}",
+                    report.position.rmse, report.position.max, report.pairs.size(), alignment);
+    steps.run([&] {
+      write_file_atomically(arguments.plot,
+                            draw_trajectory_svg(transformed(estimate, report.truth_from_estimate),
+                                                truth, title, subtitle));
+    });
+  }
+  steps.end_command();
 }
 
 void evaluate_rpe_command(const EvalArguments& arguments) {
+  require_targets(arguments);
   const TrajectoryPair pair = load_pair(arguments);
   if (!pair.has_stamps && arguments.unit == "seconds") {
     throw InputError("--delta-unit is seconds, expected frames for poses without stamps (KITTI)");
@@ -155,14 +174,17 @@ void evaluate_rpe_command(const EvalArguments& arguments) {
   print_row("RPE (m)", report.translation);
   print_row("RPE (degrees)", report.rotation);
   print("over {:g} {}, {} pairs\n", options.delta, arguments.unit, report.translation.count);
-  write_json(arguments.json, {{"metric", "rpe"},
-                              {"delta", options.delta},
-                              {"delta_unit", arguments.unit},
-                              {"all_pairs", options.all_pairs},
-                              {"alignment", arguments.alignment},
-                              {"max_difference_s", options.max_difference},
-                              {"translation_m", statistics_json(report.translation)},
-                              {"rotation_deg", statistics_json(report.rotation)}});
+  OutputSteps steps;
+  write_json(steps, arguments.json,
+             {{"metric", "rpe"},
+              {"delta", options.delta},
+              {"delta_unit", arguments.unit},
+              {"all_pairs", options.all_pairs},
+              {"alignment", arguments.alignment},
+              {"max_difference_s", options.max_difference},
+              {"translation_m", statistics_json(report.translation)},
+              {"rotation_deg", statistics_json(report.rotation)}});
+  steps.end_command();
 }
 
 // What both metrics have in common.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include "apps/commands/eval_openloris.h"
+#include "apps/command_files.h"
+#include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/output_steps.h"
 #include "apps/statistics_json.h"
 #include "apps/usage.h"
 
@@ -19,6 +22,7 @@
 #include "core/error.h"
 #include "evaluation/openloris.h"
 #include "evaluation/openloris_svg.h"
+#include "evaluation/svg.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
 
@@ -204,6 +208,11 @@ std::string position_thresholds(const std::vector<OpenlorisSystem>& systems) {
 }
 
 void run(const Arguments& arguments) {
+  std::vector<std::string> inputs = arguments.results;
+  inputs.push_back(arguments.truth);
+  CommandFiles files(inputs);
+  files.writes("--json", arguments.json, report_kind());
+  files.writes("--plot", arguments.plot, svg_kind());
   Json results = Json::array();
   std::vector<OpenlorisSystem> systems;
   for (const std::string& file : arguments.results) {
@@ -213,19 +222,26 @@ void run(const Arguments& arguments) {
     results.push_back(to_json(file, report));
     add_to_picture(systems, file, report);
   }
+  OutputSteps steps;
   if (!arguments.json.empty()) {
     const Json all = {{"metric", "openloris"}, {"results", std::move(results)}};
-    write_file_atomically(arguments.json, to_json_text(all));
+    steps.run([&] { write_file_atomically(arguments.json, to_json_text(all)); });
   }
-  if (arguments.plot.empty()) return;
-  const std::string subtitle =
-      fmt::format("Correct rate above, C-ATE below; correct within {} and {:g} degrees",
-                  position_thresholds(systems), arguments.max_angle);
-  write_file_atomically(arguments.plot,
-                        draw_openloris_svg(systems, "When the place was known", subtitle));
+  if (!arguments.plot.empty()) {
+    const std::string subtitle =
+        fmt::format("Correct rate above, C-ATE below; correct within {} and {:g} degrees",
+                    position_thresholds(systems), arguments.max_angle);
+    steps.run([&] {
+      write_file_atomically(arguments.plot,
+                            draw_openloris_svg(systems, "When the place was known", subtitle));
+    });
+  }
+  steps.end_command();
 }
 
 }  // namespace
+
+FileKind report_kind() { return json_kind("a report of `dxslam eval`", {"metric"}); }
 
 void add_eval_openloris_command(CLI::App& eval) {
   const auto arguments = std::make_shared<Arguments>();

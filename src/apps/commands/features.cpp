@@ -7,9 +7,11 @@
 #include <set>
 #include <vector>
 
+#include "apps/command_files.h"
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/output_steps.h"
 #include "apps/process.h"
 #include "apps/system_setup.h"
 #include "apps/usage.h"
@@ -60,23 +62,40 @@ void write_features(const Features& features, const std::string& path) {
   writer.write(path);
 }
 
+// Where the features of an image go to; empty for nowhere.
+std::string archive(const ExtractArguments& arguments, const std::string& image) {
+  if (arguments.npz.empty()) return {};
+  return (fs::path(arguments.npz) / archive_name(image)).string();
+}
+
+void extract_one(const ExtractArguments& arguments, const std::string& path,
+                 FeatureExtractor& extractor) {
+  const cv::Mat image = read_image(path, arguments.low_light);
+  const Features features = extractor.extract(image, true);
+  double total = 0.0;
+  for (const StageTime& stage : extractor.last_stages()) total += stage.ms;
+  print("{}: {} keypoints, descriptors of {} {}, global descriptor of {}, {:.1f} ms\n", path,
+        features.size(), features.descriptors.cols, extractor.traits().binary ? "bytes" : "floats",
+        features.global.size(), total);
+  if (!arguments.npz.empty()) write_features(features, archive(arguments, path));
+}
+
+// One that cannot be read or written costs no other.
 void extract(const ExtractArguments& arguments) {
   check_distinct(arguments.images);
-  const auto extractor = make_extractor(arguments.extractor);
   if (!arguments.npz.empty()) make_folder(arguments.npz);
-  for (const std::string& path : arguments.images) {
-    if (stop_requested()) return;
-    const cv::Mat image = read_image(path, arguments.low_light);
-    const Features features = extractor->extract(image, true);
-    double total = 0.0;
-    for (const StageTime& stage : extractor->last_stages()) total += stage.ms;
-    print("{}: {} keypoints, descriptors of {} {}, global descriptor of {}, {:.1f} ms\n", path,
-          features.size(), features.descriptors.cols,
-          extractor->traits().binary ? "bytes" : "floats", features.global.size(), total);
-    if (!arguments.npz.empty()) {
-      write_features(features, (fs::path(arguments.npz) / archive_name(path)).string());
-    }
+  CommandFiles files(arguments.images);
+  for (const std::string& image : arguments.images) {
+    files.writes("--npz", archive(arguments, image),
+                 NpzWriter::kind("an archive of `dxslam features`", "keypoints"));
   }
+  const auto extractor = make_extractor(arguments.extractor);
+  OutputSteps steps;
+  for (const std::string& image : arguments.images) {
+    if (stop_requested()) break;
+    steps.run([&] { extract_one(arguments, image, *extractor); });
+  }
+  steps.end_command();
 }
 
 }  // namespace

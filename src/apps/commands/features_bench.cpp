@@ -162,7 +162,9 @@ nlohmann::ordered_json to_json(const std::vector<Contestant>& contestants, int t
 }
 
 void bench(const BenchArguments& arguments) {
-  if (!arguments.json.empty()) require_writable(arguments.json);
+  CommandFiles({arguments.sequence})
+      .writes("--json", arguments.json,
+              json_kind("a table of `dxslam bench`", {"name", "precision"}));
   cv::setNumThreads(arguments.options.threads);
   const auto frames = read_frames(arguments);
   auto contestants = make_contestants(arguments);

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "apps/command_files.h"
 #include "apps/console.h"
 #include "apps/features_arguments.h"
 #include "apps/usage.h"
@@ -93,6 +94,8 @@ cv::Mat draw(const cv::Mat& first, const cv::Mat& second, const Features& a, con
 }
 
 void match(const MatchArguments& arguments) {
+  CommandFiles({arguments.first, arguments.second})
+      .writes("--out", arguments.picture, picture_kind());
   const auto extractor = make_extractor(arguments.extractor);
   const cv::Mat first = read_image(arguments.first, 0.0);
   const cv::Mat second = read_image(arguments.second, arguments.low_light);

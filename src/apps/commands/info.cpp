@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/command_files.h"
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/open_recording.h"
@@ -137,6 +138,9 @@ Json info_json(const InfoArguments& arguments, const RecordingInfo& info) {
 }
 
 void tell(const InfoArguments& arguments) {
+  CommandFiles({arguments.source})
+      .writes("--json", arguments.json,
+              json_kind("a description of `dxslam info`", {"source", "format"}));
   const RecordingInfo info = inspect_recording(arguments.source, arguments.reader);
   print_info(arguments, info);
   if (!arguments.json.empty()) {

@@ -264,7 +264,7 @@ int end(const LifelongArguments& arguments, Session& session, std::deque<Visit>&
   std::size_t frames = 0;
   for (const Visit& visit : visits) frames += visit.frames;
   const int code = judge_tracking(localized(visits), frames, session.why_no_pose());
-  print("results in {}\n", session.folder()->path());
+  steps.tell_place(session.folder()->path());
   return steps.report(stop_requested() ? kInterrupted : code);
 }
 

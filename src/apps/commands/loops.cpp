@@ -12,6 +12,7 @@
 #include "apps/open_recording.h"
 #include "apps/process.h"
 #include "apps/progress.h"
+#include "apps/recording_report.h"
 #include "apps/stoppable_sequence.h"
 #include "apps/usage.h"
 #include "core/error.h"
@@ -67,7 +68,10 @@ void find_loops(const LoopsArguments& arguments) {
   std::optional<LoopTruth> truth;  // a file is read at once, so that mistakes show at once
   if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
   std::optional<ResultFolder> folder;  // before anything costs time
-  if (!settings.out.empty()) folder.emplace(settings.out, loop_result_files());
+  if (!settings.out.empty()) {
+    folder.emplace(settings.out, loop_result_files());
+    require_loop_targets(settings.out, settings.methods);
+  }
   std::optional<Unsaved> unsaved;
   Progress progress("images", sequence->size());
   const LoopExperiment experiment =
@@ -90,13 +94,9 @@ void find_loops(const LoopsArguments& arguments) {
     write_loop_results(steps, *folder, settings, experiment, *truth, curves, sequence->name());
   }
   print_table(experiment, curves);
-  if (!sequence->skipped().empty()) {
-    const SkippedFrame& first = sequence->skipped().front();
-    warn("frames that were skipped: {}; the first, {}: {}", sequence->skipped().size(), first.index,
-         first.reason);
-  }
-  if (folder) print("results in {}\n", folder->path());
-  if (const int code = steps.report(kSuccess); code != kSuccess) throw CLI::RuntimeError(code);
+  print_skipped(all_skipped(*sequence, experiment.failed));
+  if (folder) steps.tell_place(folder->path());
+  steps.end_command();
 }
 
 // An option that the others leave without use is a mistake.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/command_files.h"
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/map_weld.h"
@@ -14,6 +15,7 @@
 #include "apps/recording_report.h"
 #include "apps/usage.h"
 #include "core/error.h"
+#include "io/formats/ply_file.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
 #include "map_files/map_export.h"
@@ -114,6 +116,9 @@ void print_info(const StoredMap& stored, const MapStatistics& s, double bytes) {
 
 void info_command(const MapArguments& arguments) {
   const std::string& path = arguments.files.front();
+  CommandFiles(arguments.files)
+      .writes("--json", arguments.json,
+              json_kind("a description of `dxslam map info`", {"file", "bytes"}));
   const StoredMap stored = load_map(path);
   const MapStatistics statistics = map_statistics(stored);
   print_info(stored, statistics, static_cast<double>(std::filesystem::file_size(path)));
@@ -138,24 +143,12 @@ void check_command(const MapArguments& arguments) {
   print("blind         {} keyframes that see no point\n", s.blind_keyframes);
 }
 
-void write_thumbnails(const std::string& folder, const StoredMap& stored) {
-  namespace fs = std::filesystem;
-  make_folder(folder);
-  std::size_t written = 0;
-  for (std::size_t id = 0; id < stored.thumbnails.size(); ++id) {
-    if (stored.thumbnails[id].empty()) continue;
-    write_file_atomically((fs::path(folder) / fmt::format("{:06d}.jpg", id)).string(),
-                          stored.thumbnails[id]);
-    ++written;
-  }
-  print("{} thumbnails\n", written);
-}
-
 void export_command(const MapArguments& arguments) {
   if (arguments.ply.empty() && arguments.colmap.empty() && arguments.thumbnails.empty()) {
     throw CLI::RequiredError("--ply, --colmap or --thumbnails");
   }
   const std::string& path = arguments.files.front();
+  CommandFiles(arguments.files).writes("--ply", arguments.ply, ply_kind());
   const StoredMap stored = load_map(path);
   const std::uint32_t components = stored.map.component_count();
   const auto component = static_cast<std::uint32_t>(arguments.component);
@@ -171,13 +164,14 @@ void export_command(const MapArguments& arguments) {
   }
   if (!arguments.colmap.empty()) steps.run([&] { write_map_colmap(arguments.colmap, stored); });
   if (!arguments.thumbnails.empty()) {
-    steps.run([&] { write_thumbnails(arguments.thumbnails, stored); });
+    steps.run(
+        [&] { print("{} thumbnails\n", write_map_thumbnails(arguments.thumbnails, stored)); });
   }
-  if (const int code = steps.report(kSuccess); code != kSuccess) throw CLI::RuntimeError(code);
+  steps.end_command();
 }
 
 void merge_command(const MapArguments& arguments) {
-  require_map_target(arguments.out);
+  const auto lock = lock_map_target(arguments.out);  // which may be one of the maps
   StoredMap merged = load_map(arguments.files.front());
   for (std::size_t i = 1; i < arguments.files.size(); ++i) {
     const std::string& path = arguments.files[i];

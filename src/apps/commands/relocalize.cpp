@@ -69,6 +69,7 @@ struct Results {
       "stamp,accepted,inliers,groups_tried,ms,confidence,matched,visible,spread,component,"
       "keyframe,coverage\n";
   std::vector<double> times;
+  std::vector<SkippedFrame> failed;
 
   void add(double stamp, const RelocalizationReport& report, double ms) {
     if (report.accepted) poses.push_back({stamp, report.world_from_camera});
@@ -81,14 +82,19 @@ struct Results {
   }
 };
 
-const ResultFiles kFiles{
-    {"poses.txt", "relocalization.csv"}, {"relocalization.csv"}, {"relocalization.csv"}};
+ResultFiles relocalization_files() {
+  return {{{"poses.txt", trajectory_kind()},
+           {"relocalization.csv",
+            kind_by_beginning("a table of `dxslam relocalize`", {"stamp,accepted,"})}},
+          {"relocalization.csv"},
+          {"relocalization.csv"}};
+}
 
 // A recording may have its true poses in a file of the same name.
-void require_own_poses(const ResultFolder& folder) {
+void require_own_poses(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
-  const std::string poses = folder.file("poses.txt");
-  if (!fs::exists(poses) || fs::exists(folder.file("relocalization.csv"))) return;
+  const std::string poses = (folder / "poses.txt").string();
+  if (!fs::exists(poses) || fs::exists(folder / "relocalization.csv")) return;
   throw InputError(fmt::format(
       "{}: is not from `dxslam relocalize` and would be replaced, expected another --out", poses));
 }
@@ -109,17 +115,20 @@ Results ask_all(const RelocalizeArguments& arguments, RgbdSequence& sequence,
   Results results;
   std::size_t done = 0;
   for (std::size_t i = 0; i < sequence.size(); i += arguments.stride) {
-    std::optional<RgbdImage> image = sequence.read(i);
+    const auto failure = attempt_image(i, [&] {
+      std::optional<RgbdImage> image = sequence.read(i);
+      if (!image || stop_requested()) return;
+      if (low_light) image->color = low_light->apply(image->color, image->index);
+      const FramePtr frame =
+          make_frame(*image, extractor.extract(image->color, true), sequence.camera());
+      const Stopwatch watch;
+      const RelocalizationReport report = relocalizer.relocalize(map.stored.map, map.index, *frame);
+      results.add(image->stamp, report, watch.ms());
+      progress.update(done + 1, report.accepted ? "found" : "not found");
+    });
+    if (failure) results.failed.push_back(*failure);
     if (stop_requested()) break;
     ++done;
-    if (!image) continue;
-    if (low_light) image->color = low_light->apply(image->color, image->index);
-    const FramePtr frame =
-        make_frame(*image, extractor.extract(image->color, true), sequence.camera());
-    const Stopwatch watch;
-    const RelocalizationReport report = relocalizer.relocalize(map.stored.map, map.index, *frame);
-    results.add(image->stamp, report, watch.ms());
-    progress.update(done, report.accepted ? "found" : "not found");
   }
   progress.finish();
   return results;
@@ -132,8 +141,8 @@ int relocalize(const RelocalizeArguments& arguments) {
       stoppable(open_recording(arguments.sequence, arguments.reader));
   std::optional<ResultFolder> folder;
   if (!arguments.out.empty()) {
-    folder.emplace(arguments.out, kFiles);
-    require_own_poses(*folder);
+    require_own_poses(arguments.out);
+    folder.emplace(arguments.out, relocalization_files());
   }
   const std::unique_ptr<FeatureExtractor> extractor = make_extractor(arguments.features);
   const SearchedMap map = open_map(arguments, map_header(*extractor));
@@ -147,7 +156,8 @@ int relocalize(const RelocalizeArguments& arguments) {
   print("{} of {} frames found in a map of {} keyframes; {:.1f} ms per frame (median)\n",
         results.poses.size(), results.times.size(), map.stored.map.keyframe_count(),
         summarise(results.times).median);
-  if (folder) print("results in {}\n", folder->path());
+  print_skipped(all_skipped(*sequence, results.failed));
+  if (folder) steps.tell_place(folder->path());
   return steps.report(stop_requested() ? kInterrupted : kSuccess);
 }
 

@@ -15,6 +15,7 @@
 #include "apps/session.h"
 #include "apps/stoppable_sequence.h"
 #include "apps/usage.h"
+#include "core/error.h"
 #include "slam/stage_times.h"
 #include "synthetic/low_light.h"
 
@@ -150,7 +151,7 @@ int end(const RgbdSequence& sequence, Session& session, OnlineTrajectory& online
   session.all_is_saved();
   print_outcome(record, sequence, session.system());
   const int code = judge_tracking(record.frames_tracked, record.frames_offered, record.why_no_pose);
-  if (session.folder() != nullptr) print("results in {}\n", session.folder()->path());
+  if (session.folder() != nullptr) steps.tell_place(session.folder()->path());
   return steps.report(record.interrupted ? kInterrupted : code);
 }
 

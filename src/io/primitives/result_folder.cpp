@@ -2,18 +2,14 @@
 // Copyright 2026 The dxslam authors
 #include "io/primitives/result_folder.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fnmatch.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
@@ -44,13 +40,6 @@ bool holds_more_than_comments(const fs::path& file) {
   return false;
 }
 
-bool same_file(int open_file, const std::string& path) {
-  struct stat a{};
-  struct stat b{};
-  return ::fstat(open_file, &a) == 0 && ::stat(path.c_str(), &b) == 0 && a.st_dev == b.st_dev &&
-         a.st_ino == b.st_ino;
-}
-
 [[noreturn]] void fail(const std::string& path, const std::string& reason) {
   throw InputError(
       fmt::format("{}: the results of the last run cannot be put aside: {}", path, reason));
@@ -75,79 +64,86 @@ ResultFolder::ResultFolder(std::string folder, ResultFiles files)
   std::error_code error;
   made_ = !fs::exists(folder_, error);
   make_folder(folder_);
-  lock();
   try {
+    lock_.emplace(file(kLock),
+                  fmt::format("output folder {} is in use by another run, expected a folder of its "
+                              "own for each",
+                              folder_));
     require_usable();
+  } catch (const std::system_error& e) {
+    release();
+    throw InputError(
+        fmt::format("output folder {} cannot be written to: {}", folder_, e.code().message()));
   } catch (...) {
     release();
     throw;
   }
 }
 
+const ResultFile* ResultFolder::find(const std::string& name) const {
+  const auto found = std::find_if(files_.all.begin(), files_.all.end(), [&](const auto& result) {
+    return ::fnmatch(result.name.c_str(), name.c_str(), FNM_PATHNAME) == 0;
+  });
+  return found == files_.all.end() ? nullptr : &*found;
+}
+
+void ResultFolder::require_result(const std::string& path, const ResultFile& result) const {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) return;  // a link may lead nowhere
+  if (!fs::is_regular_file(status)) {
+    throw InputError(
+        fmt::format("{}: is no regular file, expected a result or nothing there", path));
+  }
+  require_kind_or_nothing(path, result.kind);
+}
+
 void ResultFolder::require_usable() const {
   std::error_code error;
   for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
-    if (!matches(it->path().filename().string(), files_.all)) continue;
-    const fs::file_status status = it->status(error);
-    if (fs::is_regular_file(status) || !fs::exists(status)) continue;  // a link may lead nowhere
-    throw InputError(fmt::format("{}: is no regular file, expected a result or nothing there",
-                                 it->path().string()));
+    const ResultFile* const result = find(it->path().filename().string());
+    if (result != nullptr) require_result(it->path().string(), *result);
   }
   for (const char* name : {kPrevious, kOnTheWay}) {
+    const fs::file_status status = fs::symlink_status(file(name), error);
+    if (fs::exists(status) && !fs::is_directory(status)) {
+      throw InputError(fmt::format(
+          "{}: is no folder, expected one for the last results or nothing there", file(name)));
+    }
     for (fs::directory_iterator it(file(name), error), end; !error && it != end;
          it.increment(error)) {
-      if (matches(it->path().filename().string(), files_.all)) continue;
-      throw InputError(
-          fmt::format("{}: is no result, expected nothing but the last results in that folder",
-                      it->path().string()));
+      const std::string path = it->path().string();
+      const ResultFile* const result = find(it->path().filename().string());
+      if (result == nullptr) {
+        throw InputError(fmt::format(
+            "{}: is no result, expected nothing but the last results in that folder", path));
+      }
+      require_result(path, *result);
     }
   }
 }
 
 bool ResultFolder::claims(const std::string& path) const {
   std::error_code error;
-  const fs::path folder = fs::weakly_canonical(folder_, error);
+  const fs::path folder = fs::weakly_canonical(fs::absolute(folder_, error), error);
   if (error) return false;
-  const fs::path target = fs::weakly_canonical(path, error);
-  if (error) return false;
+  const fs::path target = canonical_target(path);
   const std::string inside = target.lexically_relative(folder).string();
   for (const char* name : {kPrevious, kOnTheWay}) {
     if (inside == name || inside.starts_with(std::string(name) + "/")) return true;
   }
-  return inside == kLock || matches(inside, files_.all);
+  return inside == "." || inside == kLock || find(inside) != nullptr;
 }
 
 ResultFolder::~ResultFolder() { release(); }
 
 void ResultFolder::release() {
-  ::unlink(file(kLock).c_str());  // before others can take it
-  ::close(lock_);
+  lock_.reset();
   if (made_) ::rmdir(folder_.c_str());  // only if it is empty
 }
 
 std::string ResultFolder::file(const std::string& name) const {
   return (fs::path(folder_) / name).string();
-}
-
-// The last owner may have removed the file between opening and locking it here: then its lock means
-// nothing.
-void ResultFolder::lock() {
-  const std::string path = file(kLock);
-  do {
-    if (lock_ >= 0) ::close(lock_);
-    lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (lock_ < 0) {
-      throw InputError(
-          fmt::format("output folder {} cannot be written to: {}", folder_, std::strerror(errno)));
-    }
-    // A file system without locks is no reason to refuse the run.
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      ::close(lock_);
-      throw InputError(fmt::format(
-          "output folder {} is in use by another run, expected a folder of its own for each",
-          folder_));
-    }
-  } while (!same_file(lock_, path));
 }
 
 std::vector<std::string> ResultFolder::results_in(const std::string& folder) const {
@@ -156,7 +152,7 @@ std::vector<std::string> ResultFolder::results_in(const std::string& folder) con
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     std::string name = it->path().filename().string();
     std::error_code ignored;
-    if (matches(name, files_.all) && !it->is_directory(ignored)) names.push_back(std::move(name));
+    if (find(name) != nullptr && !it->is_directory(ignored)) names.push_back(std::move(name));
   }
   return names;
 }

@@ -2,14 +2,22 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "io/primitives/file_lock.h"
+#include "io/primitives/output_file.h"
 
 namespace dxslam {
 
 /// Which files of a folder are results. Names are patterns as in a shell (`map_[0-9]*.txt`).
+struct ResultFile {
+  std::string name;
+  FileKind kind;
+};
 struct ResultFiles {
-  std::vector<std::string> all;
+  std::vector<ResultFile> all;
   /// One of these is written last: a folder that holds none has no whole results.
   std::vector<std::string> last;
   /// Text files, of which one must hold more than comments. Results without do not count as whole.
@@ -28,8 +36,8 @@ class ResultFolder {
  public:
   /// Makes the folder, where it is missing, and takes it for this object; no other process gets it
   /// as long. Throws InputError, one sentence, if it cannot be made or written to, if another run
-  /// writes into it, if something that is no regular file (a pipe, a folder) has the name of a
-  /// result, and if its folder `previous` holds other files.
+  /// writes into it, if something has the name of a result and is none (a file of another kind, a
+  /// pipe, a folder), and if `previous` in it is no folder or holds other files.
   ResultFolder(std::string folder, ResultFiles files);
   ~ResultFolder();
   ResultFolder(const ResultFolder&) = delete;
@@ -49,16 +57,17 @@ class ResultFolder {
 
  private:
   void require_usable() const;
+  const ResultFile* find(const std::string& name) const;
+  void require_result(const std::string& path, const ResultFile& result) const;
   bool has_content() const;
   bool whole() const;
   std::vector<std::string> results_in(const std::string& folder) const;
   void move_aside();
-  void lock();
   void release();
 
   std::string folder_;
   ResultFiles files_;
-  int lock_ = -1;
+  std::optional<FileLock> lock_;
   bool made_ = false;  // the folder was not there
   bool begun_ = false;
 };

@@ -17,9 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+FileKind result_kind() {
+  return {"a result", [](std::string_view head) { return !head.starts_with("precious"); }};
+}
+
 ResultFiles run_files() {
-  return {
-      {"trajectory.txt", "map_[0-9]*.txt", "summary.json"}, {"summary.json"}, {"trajectory.txt"}};
+  return {{{"trajectory.txt", result_kind()},
+           {"map_[0-9]*.txt", result_kind()},
+           {"summary.json", result_kind()}},
+          {"summary.json"},
+          {"trajectory.txt"}};
 }
 
 std::set<std::string> files_in(const std::string& folder) {
@@ -155,6 +162,25 @@ TEST(ResultFolder, RefusesWhatIsNoFileInThePlaceOfAResult) {
   results.begin();
 }
 
+TEST(ResultFolder, RefusesFilesOfOthersInThePlaceOfResults) {
+  const TestFolder folder;
+  for (const char* name : {"trajectory.txt", "map_3.txt", "previous/summary.json"}) {
+    folder.write(name, "precious");
+    expect_input_error([&] { ResultFolder(folder.path(), run_files()); },
+                       {name, "is not a result", "not replaced"});
+    EXPECT_EQ(folder.read(name), "precious");
+    EXPECT_FALSE(fs::exists(folder / ".dxslam.lock"));
+    fs::remove(folder / name);
+  }
+  fs::remove(folder / "previous");
+  folder.write("previous", "mine");
+  expect_input_error([&] { ResultFolder(folder.path(), run_files()); }, {"previous", "no folder"});
+  EXPECT_EQ(folder.read("previous"), "mine");
+  fs::remove(folder / "previous");
+  folder.write("trajectory.txt", "");
+  ResultFolder(folder.path(), run_files()).begin();
+}
+
 TEST(ResultFolder, ClaimsWhatItReplacesOrRemoves) {
   const TestFolder folder;
   fs::create_directory(folder / "other");
@@ -164,7 +190,7 @@ TEST(ResultFolder, ClaimsWhatItReplacesOrRemoves) {
   const ResultFolder results(folder.path(), run_files());
   for (const char* name :
        {"trajectory.txt", "map_12.txt", "other/../summary.json", "previous", "previous/m.dxmap",
-        "other/link/map_1.txt", "leads_there", ".dxslam.lock"}) {
+        ".", "other/link/map_1.txt", "leads_there", ".dxslam.lock"}) {
     EXPECT_TRUE(results.claims(folder / name)) << name;
   }
   for (const char* name : {"m.dxmap", "map_of_town.txt", "other/trajectory.txt", "previous_map"}) {
