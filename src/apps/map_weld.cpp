@@ -6,9 +6,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "apps/map_io.h"
 #include "loop_closing/loop_closer.h"
 #include "slam/loop_search.h"
+#include "slam/stored_system.h"
 #include "slam/system_options.h"
 
 namespace dxslam::apps {

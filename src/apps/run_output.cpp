@@ -105,7 +105,7 @@ Json components_table(const System& system) {
 
 Json loop_table(const System& system) {
   Json candidates = Json::array();
-  const LoopLog& log = system.backend().loop_log();
+  const LoopLog& log = system.loop_log();
   for (const LoopRecord& r : log.records()) {
     candidates.push_back({{"frame", r.frame},
                           {"query", r.query},
@@ -124,7 +124,7 @@ Json loop_table(const System& system) {
                           {"contradiction_m", rounded(r.contradiction, 1e-4)},
                           {"largest_move_m", rounded(r.largest_move, 1e-4)}});
   }
-  return {{"method", system.backend().loop_method()},
+  return {{"method", system.loop_method()},
           {"accepted", log.accepted()},
           {"corrections", log.corrections()},
           {"candidates_left_out", log.forgotten()},

@@ -195,7 +195,7 @@ void Session::save_map(OutputSteps& steps) {
   }
   steps.run([&] {
     saver_->finish();
-    save_system_map(settings_.map_out, header_, system_->map(), system_->backend().closed_loops(),
+    save_system_map(settings_.map_out, header_, system_->map(), system_->closed_loops(),
                     thumbnails_->of(system_->map()));
   });
 }

@@ -15,6 +15,7 @@
 #include "apps/run_settings.h"
 #include "apps/thumbnails.h"
 #include "io/primitives/result_folder.h"
+#include "slam/first_error.h"
 #include "slam/system.h"
 
 namespace dxslam::apps {

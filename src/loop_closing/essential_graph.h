@@ -4,17 +4,11 @@
 
 #include <vector>
 
+#include "loop_closing/loop_edge.h"
 #include "map/map.h"
 #include "optimization/pose_graph.h"
 
 namespace dxslam {
-
-/// Two keyframes that a closed loop has tied together. Kept by id for good: where one of them was
-/// culled later, its living anchor takes its place (Map::anchor_of).
-struct LoopEdge {
-  KeyframeId a = kNoId;
-  KeyframeId b = kNoId;
-};
 
 /// What holds a component together, with the ids its numbers belong to: the spanning tree, strong
 /// covisibility and the loops closed so far. All edges are measured in the map as it is, so that

@@ -6,35 +6,13 @@
 #include <vector>
 
 #include "core/features.h"
-#include "core/options.h"
 #include "loop_closing/background_bundle.h"
+#include "loop_closing/loop_closing_options.h"
 #include "loop_closing/loop_correction.h"
 #include "loop_closing/loop_verification.h"
 #include "map/map.h"
 
 namespace dxslam {
-
-struct LoopCloserOptions {
-  int max_candidates = 5;
-  int pause_keyframes = 5;
-  bool full_bundle = true;
-  LoopVerificationOptions verification;
-  LoopCorrectionOptions correction;
-  BundleOptions bundle{10, 10};
-
-  template <class Self, class Visitor>
-  static void describe(Self& self, Visitor& visit) {
-    visit("max_candidates", self.max_candidates, {1, 1000}, "keyframes",
-          "most candidates verified for one keyframe");
-    visit("pause_keyframes", self.pause_keyframes, {0, 100000}, "keyframes",
-          "that go by after a loop before the next one is looked at");
-    visit(for_users("full_bundle"), self.full_bundle, "",
-          "adjust all keyframes and points in the background after a correction");
-    visit.group("verification", self.verification);
-    visit.group("correction", self.correction);
-    visit.group("bundle", self.bundle);
-  }
-};
 
 /// One candidate, from verification to its effect on the map.
 struct LoopAttempt {

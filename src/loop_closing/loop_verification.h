@@ -8,9 +8,8 @@
 #include "core/camera.h"
 #include "core/features.h"
 #include "core/se3.h"
-#include "geometry/pnp.h"
+#include "loop_closing/loop_closing_options.h"
 #include "map/map.h"
-#include "optimization/pose_optimizer.h"
 
 namespace dxslam {
 
@@ -31,73 +30,6 @@ enum class LoopRejection {
 };
 /// In words for a log: "too few descriptors match".
 const char* describe(LoopRejection rejection);
-
-struct LoopVerificationOptions {
-  int group_keyframes = 8;
-  int group_min_shared = 15;
-  int max_points = 6000;
-  int max_shared = 15;
-  double ratio = 0.9;
-  int min_matches = 15;
-  double search_radius = 10.0;
-  double search_ratio = 0.95;
-  int min_inliers = 30;
-  double min_inlier_ratio = 0.25;
-  double min_found_share = 0.06;
-  int min_cells = 8;
-  double min_covered_share = 0.7;
-  double depth_tolerance = 0.1;
-  double min_depth_share = 0.6;
-  int confirming_keyframes = 5;
-  int min_confirmations = 3;
-  PnpOptions pnp{1000, 0.999, 4.0, 12, 1};
-  PoseOptimizerOptions pose;
-
-  template <class Self, class Visitor>
-  static void describe(Self& self, Visitor& visit) {
-    visit("group_keyframes", self.group_keyframes, {1, 1000}, "keyframes",
-          "around the candidate whose points are sought in the query");
-    visit("group_min_shared", self.group_min_shared, {1, 100000}, "points",
-          "that each of them shares with the candidate");
-    visit("max_points", self.max_points, {100, 1000000}, "points", "most points sought");
-    visit("max_shared", self.max_shared, {1, 100000}, "points",
-          "keyframes that share so many are no loop but neighbours");
-    visit("ratio", self.ratio, {0.1, 1}, "", "nearest to second nearest descriptor distance");
-    visit("min_matches", self.min_matches, {4, 100000}, "matches",
-          "of descriptors, before a pose is sought");
-    visit("search_radius", self.search_radius, {0.5, 500}, "pixels at 640 wide",
-          "window around the pixel of a point, halved in the second round");
-    visit("search_ratio", self.search_ratio, {0.1, 1}, "",
-          "nearest to second nearest descriptor distance within the window");
-    visit("min_inliers", self.min_inliers, {6, 100000}, "points",
-          "that must lie where the pose puts them");
-    visit("min_inlier_ratio", self.min_inlier_ratio, {0, 1}, "",
-          "their share of the matches within the window");
-    visit(
-        "min_found_share", self.min_found_share, {0, 1}, "",
-        "their share of the points that should be in view, or of the keypoints if these are fewer");
-    visit("min_cells", self.min_cells, {1, 48}, "cells",
-          "of a grid of 8 by 6 over the image in which they must lie");
-    visit("min_covered_share", self.min_covered_share, {0, 1}, "",
-          "share of the cells where points are due that must hold one: a picture that hangs "
-          "elsewhere, too, fills its frame only");
-    visit("depth_tolerance", self.depth_tolerance, {0.001, 10}, "",
-          "relative difference of predicted and measured depth");
-    visit("min_depth_share", self.min_depth_share, {0, 1}, "",
-          "share of points at their pixel whose depth must agree");
-    visit("confirming_keyframes", self.confirming_keyframes, {0, 100}, "keyframes",
-          "neighbours of the query that are asked as well");
-    visit("min_confirmations", self.min_confirmations, {0, 100}, "keyframes",
-          "neighbours that must see the place, or all where fewer look at it");
-    visit.group("pnp", self.pnp);
-    visit.group("pose", self.pose);
-  }
-  template <class Checker>
-  void relate(const Checker& check) const {
-    check.at_most("min_confirmations", min_confirmations, "confirming_keyframes",
-                  confirming_keyframes);
-  }
-};
 
 /// A keypoint of the query is an image of a point of the candidate's group.
 struct LoopMatch {

@@ -6,25 +6,12 @@
 
 #include "slam/backend.h"
 #include "slam/event_stream.h"
+#include "slam/mapping_totals.h"
 #include "slam/snapshot_exchange.h"
 #include "slam/stage_times.h"
 #include "slam/tracked_poses.h"
 
 namespace dxslam {
-
-/// Counts over everything mapping did.
-struct MappingTotals {
-  std::int64_t keyframes = 0;
-  std::int64_t new_points = 0;
-  std::int64_t triangulated_points = 0;
-  std::int64_t fused_points = 0;
-  std::int64_t culled_points = 0;
-  std::int64_t culled_keyframes = 0;
-  std::int64_t bundle_keyframes = 0;  ///< moved by local bundle adjustment, summed over keyframes
-  std::int64_t bundle_observations = 0;   ///< in it
-  std::int64_t outlier_observations = 0;  ///< unbound by it
-  std::int64_t dropped_requests = 0;      ///< since mapping was busy (real time only)
-};
 
 /// What mapping does with the keyframes that tracking asks for: works them into the map step by
 /// step, hands each new state back, and tells of it. Belongs to the mapping thread.

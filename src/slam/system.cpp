@@ -2,305 +2,57 @@
 // Copyright 2026 The dxslam authors
 #include "slam/system.h"
 
-#include <fmt/format.h>
+#include <utility>
 
-#include <algorithm>
-#include <system_error>
-
-#include "core/error.h"
+#include "slam/system_engine.h"
 
 namespace dxslam {
-namespace {
-
-SystemOptions checked(const SystemOptions& options) {
-  validate_system_options(options);
-  return options;
-}
-
-Camera prepared(Camera camera) {
-  camera.prepare("calibration");
-  return camera;
-}
-
-}  // namespace
 
 System::System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor,
                const SystemOptions& options, FrameCallback on_frame)
-    : camera_(prepared(camera)),
-      options_(checked(options)),
-      extractor_(std::move(extractor)),
-      on_frame_(std::move(on_frame)),
-      backend_(camera_, *extractor_, options_, GiveWay(right_of_way_)),
-      mapping_session_(backend_, snapshots_, events_, times_, poses_),
-      tracking_session_(camera_, extractor_->traits(), options_, snapshots_, right_of_way_,
-                        [this](const Frame& frame) { return relocalize(frame); }),
-      extracted_(static_cast<std::size_t>(options.queued_frames)),
-      tasks_(static_cast<std::size_t>(options.queued_keyframes)) {
-  mapping_ = options_.mode == "slam";
-  extractor_->keep_encoder(true);
-  if (options_.deterministic) return;
-  try {
-    threads_.reserve(2);
-    threads_.emplace_back([this] { guard([this] { run_tracking(); }); });
-    threads_.emplace_back([this] { guard([this] { run_mapping(); }); });
-  } catch (const std::system_error& error) {
-    end_threads();
-    throw InputError(fmt::format("no threads for tracking and mapping: {}, expected two more",
-                                 error.code().message()));
-  }
-}
-
-System::~System() { end_threads(); }
-
-void System::end_threads() {
-  close_queues();
-  for (std::thread& thread : threads_) thread.join();
-  threads_.clear();
-}
+    : engine_(std::make_unique<SystemEngine>(camera, std::move(extractor), options,
+                                             std::move(on_frame))) {}
+System::~System() = default;
 
 void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
-  require(!began_, "a map must be loaded before the first image");
-  require(map.keyframe_count() > 0, "a map to go on with must not be empty");
-  backend_.load(std::move(map), std::move(closed_loops));
-  may_be_map_ = true;
-  tracking_session_.go_on_with_map();
-  next_begins_sequence_ = true;
+  engine_->load_map(std::move(map), std::move(closed_loops));
 }
-
 void System::set_autosave(int keyframes, MapCallback save) {
-  require(!began_, "autosave must be set before the first image");
-  require(keyframes > 0, "autosave needs a positive number of keyframes");
-  autosave_keyframes_ = keyframes;
-  autosave_ = std::move(save);
+  engine_->set_autosave(keyframes, std::move(save));
 }
+void System::set_mapping(bool on) { engine_->set_mapping(on); }
+void System::begin_sequence() { engine_->begin_sequence(); }
 
-void System::process(const RgbdImage& image) {
-  error_.rethrow();
-  require(!finished_, "no image can be processed after finish()");
-  may_be_map_ = may_be_map_ || mapping_;
-  if (!may_be_map_) {
-    throw InputError("localization mode has no map, expected one to be loaded");
-  }
-  began_ = true;
-  Extracted extracted = extract(image);
-  if (!options_.deterministic) {
-    extracted_.push(std::move(extracted));  // or there is an error to throw
-  } else {
-    guard([&] {
-      Tracked tracked = track(extracted);
-      if (tracked.request) change_map(mapping_of(std::move(tracked)));
-    });
-  }
-  error_.rethrow();
+void System::process(const RgbdImage& image) { engine_->process(image); }
+bool System::try_process(const RgbdImage& image) { return engine_->try_process(image); }
+void System::finish(const MayGoOn& may_go_on) { engine_->finish(may_go_on); }
+bool System::has_failed() const { return engine_->has_failed(); }
+
+SubscriptionPtr System::subscribe(std::size_t capacity) {
+  return engine_->events().subscribe(capacity);
 }
+WholeMap System::whole_map() { return engine_->whole_map(); }
+EventStream& System::events() { return engine_->events(); }
 
-bool System::try_process(const RgbdImage& image) {
-  if (options_.deterministic) {
-    process(image);
-    return true;
-  }
-  live_ = true;
-  error_.rethrow();
-  if (!finished_ && !extracted_.has_room()) return false;
-  process(image);
-  return true;
-}
-
-void System::finish(const MayGoOn& may_go_on) {
-  if (std::exchange(finished_, true)) return error_.rethrow();
-  extracted_.close();  // each thread closes the queue behind it when its own runs dry
-  for (std::thread& thread : threads_) thread.join();
-  threads_.clear();
-  if (!has_failed()) {
-    guard([&] {
-      const Stopwatch watch;
-      backend_.finish(may_go_on, [this](const Task& change) { change_map(change); });
-      times_.add("full_bundle", watch.ms());
-      mapping_session_.tell_changes(true);
-    });
-  }
-  if (map_whole_) note_map_size();
-  events_.end();
-  error_.rethrow();
-}
-
-void System::note_map_size() {
-  map_sizes_.push_back({map().keyframe_count(), map().point_count()});
-}
-
-System::Extracted System::extract(const RgbdImage& image) {
-  const RightOfWay::Claim claim(right_of_way_);
-  const Stopwatch watch;
-  const Features features = extractor_->extract(image.color, false);
-  FramePtr frame = make_frame(image, features, camera_);
-  const double ms = watch.ms();
-  times_.add("extract", ms);
-  return {std::move(frame), std::exchange(next_begins_sequence_, false), ms};
-}
-
-System::Tracked System::track(const Extracted& extracted) {
-  if (extracted.begins_recording) begin_recording();
-  const Stopwatch watch;
-  Tracked tracked = tracking_session_.track_or_relocalize(extracted.frame, mapping_);
-  if (must_be_dropped(tracked)) {
-    tracking_session_.take_back_request();
-    tracked.request.reset();
-    tracked.frame.is_keyframe = false;
-    ++dropped_requests_;
-  }
-  const double ms = watch.ms();
-  times_.add("track", ms);
-  times_.add("frame", extracted.ms + ms);
-  poses_.append(tracked.frame);
-  tell(extracted, tracked, ms);
-  if (on_frame_) call([&] { on_frame_(tracked.frame); });
-  return tracked;
-}
-
-void System::tell(const Extracted& extracted, const Tracked& tracked, double track_ms) {
-  if (tracked.lost) events_.publish(*tracked.lost);
-  if (tracked.found) events_.publish(*tracked.found);
-  events_.publish(FrameTracked{tracked.frame, extracted.ms, track_ms});
-}
-
-// Live input does not wait for mapping, but for the first keyframe: there is nothing else to track.
-bool System::must_be_dropped(const Tracked& tracked) {
-  return live_ && tracked.request && tracking_session_.has_local_map() && !tasks_.has_room();
-}
-
-void System::begin_recording() {
-  // After the keyframes of the recording before, some of which may still wait for mapping.
-  Task task = [this, first = poses_.frames().empty()] {
-    if (!first) note_map_size();
-    backend_.begin_recording();
-  };
-  if (options_.deterministic) {
-    task();
-  } else if (live_) {
-    tasks_.push_at_once(std::move(task));  // mapping never holds up tracking
-  } else {
-    tasks_.push(std::move(task));
-  }
-  // What was seen last says nothing about where the new recording begins.
-  backend_.forget_seen();
-  tracking_session_.begin_recording();
-  events_.publish(RecordingBegun{recordings_++});
-}
-
-// In the thread that waits for it.
-RelocalizationAnswer System::relocalize(const Frame& frame) {
-  const Stopwatch watch;
-  std::unique_lock lock(map_mutex_, std::defer_lock);
-  {
-    // Mapping may be giving way to frames, with the map in hand.
-    const RightOfWay::Hurry hurry(right_of_way_);
-    lock.lock();
-  }
-  if (!map_whole_) return {};
-  RelocalizationAnswer answer = backend_.relocalize(frame);
-  times_.add("relocalize", watch.ms());
-  return answer;
-}
-
-void System::change_map(const Task& task) {
-  const std::lock_guard lock(map_mutex_);
-  map_whole_ = false;
-  task();
-  map_whole_ = true;
-}
-
-System::Task System::mapping_of(Tracked tracked) {
-  return [this, asked = std::move(tracked)] {
-    if (!asked.mapping) return mapping_session_.follow(*asked.request, asked.epoch);
-    mapping_session_.map_keyframe(*asked.request, asked.epoch);
-    autosave();
-  };
-}
-
-void System::autosave() {
-  if (!autosave_ || mapping_session_.totals().keyframes % autosave_keyframes_ != 0) return;
-  call([this] { autosave_(map(), backend_.closed_loops()); });
-}
-
-WholeMap System::whole_map() {
-  const std::lock_guard lock(map_mutex_);
-  if (!map_whole_) return {};
-  backend_.record_changes(true);
-  mapping_session_.tell_changes(false);
-  return {events_.map_version(), dxslam::whole_map(map())};
-}
-
-MappingTotals System::mapping_totals() const {
-  MappingTotals totals = mapping_session_.totals();
-  totals.dropped_requests = dropped_requests_;
-  return totals;
-}
-
-void System::run_tracking() {
-  while (std::optional<Extracted> extracted = extracted_.pop()) {
-    Tracked tracked = track(*extracted);
-    if (!tracked.request) continue;
-    const bool first = !tracking_session_.has_local_map();
-    if (!tasks_.push(mapping_of(std::move(tracked)))) break;
-    // There is nothing to track against before the first keyframe is in the map.
-    if (first && !snapshots_.wait()) break;
-  }
-  tasks_.close();
-}
-
-void System::run_mapping() {
-  while (const std::optional<Task> task = tasks_.pop()) change_map(*task);
-}
-
-void System::call(const std::function<void()>& callback) {
-  std::string said = "something that is no exception";
-  try {
-    return callback();
-  } catch (const std::exception& error) {
-    said = error.what();
-  } catch (...) {
-  }
-  const std::lock_guard lock(callback_mutex_);
-  if (callback_failures_.count++ == 0) callback_failures_.first = said;
-}
-
-void System::tell_failure() {
-  try {
-    error_.rethrow();
-  } catch (const std::exception& error) {
-    events_.publish(RunFailed{error.what()});
-  } catch (...) {
-    events_.publish(RunFailed{"something that is no exception"});
-  }
-  events_.end();
-}
-
-void System::guard(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (...) {
-    error_.keep_current();
-    close_queues();
-    tell_failure();
-  }
-}
-
-void System::close_queues() {
-  extracted_.close();
-  tasks_.close();
-  snapshots_.stop();
-}
-
+const FrameLog& System::frames() const { return engine_->frames(); }
+std::vector<ComponentSummary> System::components() const { return engine_->components(); }
 Trajectory System::trajectory(std::optional<std::uint32_t> component) const {
-  if (map().keyframe_count() == 0) return {};
-  return poses_.trajectory(map(), component ? *component : main_component());
+  return engine_->trajectory(component);
 }
-
 Trajectory System::keyframe_trajectory(std::optional<std::uint32_t> component) const {
-  if (map().keyframe_count() == 0) return {};
-  return keyframe_poses(map(), component ? *component : main_component());
+  return engine_->keyframe_trajectory(component);
 }
-
-std::uint32_t System::main_component() const { return components().front().component; }
+bool System::map_is_whole() const { return engine_->map_is_whole(); }
+const Map& System::map() const { return engine_->map(); }
+const std::vector<LoopEdge>& System::closed_loops() const {
+  return engine_->backend().closed_loops();
+}
+const LoopLog& System::loop_log() const { return engine_->backend().loop_log(); }
+const std::string& System::loop_method() const { return engine_->backend().loop_method(); }
+const std::vector<MapSize>& System::map_sizes() const { return engine_->map_sizes(); }
+MappingTotals System::mapping_totals() const { return engine_->mapping_totals(); }
+const StageTimes& System::times() const { return engine_->times(); }
+const CallbackFailures& System::callback_failures() const { return engine_->callback_failures(); }
+const FeatureExtractor& System::extractor() const { return engine_->extractor(); }
 
 }  // namespace dxslam

@@ -6,7 +6,7 @@
 
 #include "core/options.h"
 #include "features/extractor_options.h"
-#include "loop_closing/loop_closer.h"
+#include "loop_closing/loop_closing_options.h"
 #include "mapping/mapping_options.h"
 #include "place/loop_options.h"
 #include "relocalization/relocalization_options.h"

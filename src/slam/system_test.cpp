@@ -173,7 +173,7 @@ TEST(System, BeginsANewMapWhenItCannotFindItselfAndJoinsThemLater) {
   ASSERT_EQ(together->components().size(), 1U);
   EXPECT_EQ(together->trajectory().size(), static_cast<std::size_t>(30 + kFrames - 3));
   bool joined = false;
-  for (const LoopRecord& record : together->backend().loop_log().records()) {
+  for (const LoopRecord& record : together->loop_log().records()) {
     joined = joined || (record.accepted && record.effect == "join");
   }
   EXPECT_TRUE(joined);

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <utility>
 
-#include "apps/map_io.h"
 #include "apps/map_weld.h"
 #include "core/error.h"
 #include "map_files/map_merge.h"
+#include "slam/stored_system.h"
 
 namespace dxslam::fuzz {
 namespace {
@@ -89,8 +89,7 @@ StoredMap BaseMaps::walk(const Recording& recording, const std::vector<int>& num
   system->finish();
   require(system->map().keyframe_count() >= 3, "the made-up recording must make a map");
   const std::string path = folder_ + "/walk";
-  apps::save_system_map(path, apps::map_header(system->extractor()), system->map(),
-                        system->backend().closed_loops(), {});
+  save_system_map(path, map_header(system->extractor()), system->map(), system->closed_loops(), {});
   return load_map(path);
 }
 

@@ -8,13 +8,13 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "apps/map_io.h"
 #include "apps/map_weld.h"
 #include "core/error.h"
 #include "map_files/map_export.h"
 #include "map_files/map_merge.h"
 #include "map_files/map_statistics.h"
 #include "mutation.h"
+#include "slam/stored_system.h"
 
 namespace dxslam::fuzz {
 namespace {
@@ -109,9 +109,8 @@ class Trial {
   std::unique_ptr<System> run_system(const std::string& file, const std::string& mode,
                                      const std::vector<int>& frames) const {
     auto system = make_system(recording_, mode, !thorough_);
-    const MapHeader current = apps::map_header(system->extractor());
-    const bool taken =
-        unless_refused([&] { apps::hand_over(load(file), *system, "the map", current); });
+    const MapHeader current = map_header(system->extractor());
+    const bool taken = unless_refused([&] { hand_over(load(file), *system, "the map", current); });
     if (!taken) return nullptr;
     must_work(mode.c_str(), [&] {
       for (const RgbdImage& image : images_of(recording_, frames)) system->process(image);
@@ -131,9 +130,8 @@ class Trial {
     if (system == nullptr) return;
     report_.tracked = tracked_any(*system);
     report_.joined = system->components().size() < components;
-    save_and_load(
-        take_snapshot(apps::map_header(system->extractor()), system->map(),
-                      apps::stored_loops(system->map(), system->backend().closed_loops())));
+    save_and_load(take_snapshot(map_header(system->extractor()), system->map(),
+                                stored_loops(system->map(), system->closed_loops())));
   }
 
   void merge(const std::string& file) {

@@ -10,7 +10,6 @@
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/features_arguments.h"
-#include "apps/map_io.h"
 #include "apps/open_recording.h"
 #include "apps/output_steps.h"
 #include "apps/process.h"
@@ -27,6 +26,7 @@
 #include "io/recordings/sequence_reader.h"
 #include "relocalization/relocalizer.h"
 #include "slam/stage_times.h"
+#include "slam/stored_system.h"
 #include "slam/system_options.h"
 #include "synthetic/low_light.h"
 
