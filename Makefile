@@ -1,7 +1,7 @@
 # The common tasks by name; `make help` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test train benchmark format check-format tidy asan tsan clean
+.PHONY: help setup build install demo test train benchmark format check-format tidy asan tsan clean
 
 JOBS ?= $(shell nproc)
 PRESET ?= release
@@ -21,6 +21,11 @@ $(BUILD)/build.ninja: | setup
 
 build: setup $(BUILD)/build.ninja  ## the program, at build/release/dxslam
 	cmake --build $(BUILD) -j $(JOBS) --target dxslam
+
+PREFIX ?= /usr/local
+install: setup $(BUILD)/build.ninja  ## program and C++ library to PREFIX (default: /usr/local)
+	cmake --build $(BUILD) -j $(JOBS) --target dxslam dxslam_library
+	cmake --install $(BUILD) --prefix '$(PREFIX)'
 
 demo: build  ## make a synthetic recording, run SLAM on it, evaluate and draw the result
 	@rm -rf out/demo

@@ -8,8 +8,10 @@ usage: licence_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dx
 import importlib.machinery
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -41,6 +43,15 @@ class Program(unittest.TestCase):
         self.assertIn("openvino (wheel)", done.stdout)
         for unwanted in ("gdal", "poppler", "jbig", "imgcodecs"):
             self.assertNotIn(unwanted, done.stdout)
+
+    def test_knows_what_was_copied_out_of_a_wheel(self):
+        for library in (ROOT / ".venv" / "lib").glob("python3*/site-packages/openvino/libs/libtbb.so.*"):
+            with tempfile.TemporaryDirectory() as folder:
+                copy = Path(folder) / library.name
+                shutil.copy(library, copy)
+                self.assertEqual(scan.wheel_of(copy), scan.wheel_of(library))
+                copy.write_bytes(copy.read_bytes() + b"changed")
+                self.assertIsNone(scan.wheel_of(copy))
 
     def test_a_program_that_is_not_there(self):
         done = subprocess.run([ROOT / "scripts" / "licence_scan", ROOT / "nothing"], text=True,

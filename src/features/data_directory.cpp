@@ -2,6 +2,9 @@
 // Copyright 2026 The dxslam authors
 #include "features/data_directory.h"
 
+#include <dlfcn.h>
+#include <link.h>
+
 #include <cstdlib>
 #include <filesystem>
 
@@ -13,16 +16,38 @@ std::string environment(const char* name) {
   return value == nullptr ? std::string() : std::string(value);
 }
 
+// The file that this code was loaded from: the program, or the shared library in somebody else's.
+std::filesystem::path own_file() {
+  Dl_info symbol;
+  link_map* object = nullptr;
+  const void* here = reinterpret_cast<const void*>(&data_directory);
+  const bool found =
+      dladdr1(here, &symbol, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0 &&
+      object != nullptr;
+  // The program itself has no name there.
+  const std::string name = found && object->l_name != nullptr ? object->l_name : "";
+  std::error_code error;
+  const auto file = std::filesystem::canonical(name.empty() ? "/proc/self/exe" : name, error);
+  return error ? std::filesystem::path() : file;
+}
+
+// Beside the folder `bin`, `lib` or `lib/x86_64-linux-gnu`, wherever the tree was moved to.
+std::string installed_data() {
+  std::filesystem::path folder = own_file().parent_path();
+  for (int up = 0; up < 2 && folder.has_relative_path(); ++up) {
+    folder = folder.parent_path();
+    const auto installed = folder / "share" / "dxslam";
+    std::error_code error;
+    if (std::filesystem::is_directory(installed, error)) return installed.string();
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string data_directory() {
   if (const std::string chosen = environment("DXSLAM_DATA"); !chosen.empty()) return chosen;
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    const auto installed = program.parent_path().parent_path() / "share" / "dxslam";
-    if (std::filesystem::is_directory(installed, error)) return installed.string();
-  }
+  if (const std::string installed = installed_data(); !installed.empty()) return installed;
   return DXSLAM_DATA_DIR;
 }
 

@@ -6,9 +6,9 @@
 
 namespace dxslam {
 
-/// Folder that holds `manifests/` and `models/`: $DXSLAM_DATA where that is set, else
-/// `../share/dxslam` beside the folder of the running program (an installed one), else the source
-/// folder the library was built from.
+/// Folder that holds `manifests/` and `models/`: $DXSLAM_DATA where that is set, else the folder
+/// `share/dxslam` of the installation that the library (or, linked statically, the program) lies
+/// in, wherever that was moved to; else the source folder the library was built from.
 std::string data_directory();
 /// Whether the user chose it by $DXSLAM_DATA.
 bool is_data_directory_chosen();
