@@ -55,7 +55,8 @@ std::string format_pose(const StampedPose& pose);
 /// The whole file, replaced atomically.
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
-/// What write_trajectory() and TrajectoryWriter write; not other files in TUM format.
+/// What write_trajectory() and TrajectoryWriter write, and a single line of comment; not other
+/// files in TUM format.
 FileKind trajectory_kind();
 
 /// Writes a trajectory while it grows. Each pose is handed to the system at once, so all appended

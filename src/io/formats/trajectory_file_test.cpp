@@ -97,5 +97,16 @@ TEST(TrajectoryWriter, KeepsWholeRowsOnAFullDisk) {
   EXPECT_EQ(read_trajectory(folder / "t.txt").size(), WEXITSTATUS(status) + std::size_t{1});
 }
 
+TEST(TrajectoryFile, IsToldFromThoseOfOthers) {
+  const FileKind kind = trajectory_kind();
+  const std::string header = "# timestamp tx ty tz qx qy qz qw\n";
+  EXPECT_TRUE(kind.matches(header + "1.0 0 0 0 0 0 0 1\n"));
+  EXPECT_TRUE(kind.matches(header.substr(0, 9)));
+  EXPECT_TRUE(kind.matches("# of an earlier run\n"));
+  EXPECT_FALSE(kind.matches("# mine\n1.0 0 0 0 0 0 0 1\n"));
+  EXPECT_FALSE(kind.matches("1.0 0 0 0 0 0 0 1\n"));
+  EXPECT_FALSE(kind.matches("precious\n"));
+}
+
 }  // namespace
 }  // namespace dxslam
