@@ -49,10 +49,10 @@ class Package(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="dxslam_package_")
         cls.addClassCleanup(folder.cleanup)
         cls.folder = Path(folder.name)
-        must("cmake", "--install", BUILD, "--prefix", cls.folder / "built")
+        must("cmake", "--install", BUILD, "--prefix", "/built/for/here", DESTDIR=str(cls.folder))
         cls.prefix = cls.folder / "moved" / "here"
         cls.prefix.parent.mkdir()
-        (cls.folder / "built").rename(cls.prefix)
+        (cls.folder / "built" / "for" / "here").rename(cls.prefix)
         cls.program = cls.prefix / "bin" / "dxslam"
         cls.library = next(cls.prefix.glob("lib*/**/libdxslam.so"))
         cls.recording = cls.folder / "recording"
@@ -93,7 +93,7 @@ class Package(unittest.TestCase):
         include = self.prefix / "include"
         source = self.folder / "headers.cpp"
         headers = sorted(path.relative_to(include) for path in include.rglob("*.h"))
-        self.assertLess(len(headers), 70)
+        self.assertLess(len(headers), 80)
         source.write_text("".join(f"#include <{header}>\n" for header in headers))
         flags = must("pkg-config", "--cflags", "dxslam",
                      PKG_CONFIG_PATH=str(self.library.parent / "pkgconfig"))
