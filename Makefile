@@ -1,7 +1,7 @@
 # The common tasks by name; `make help` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build install demo test train benchmark format check-format tidy asan tsan clean
+.PHONY: help setup build install deb demo test train benchmark format check-format tidy asan tsan clean
 
 JOBS ?= $(shell nproc)
 PRESET ?= release
@@ -26,6 +26,10 @@ PREFIX ?= /usr/local
 install: setup $(BUILD)/build.ninja  ## program and C++ library to PREFIX (default: /usr/local)
 	cmake --build $(BUILD) -j $(JOBS) --target dxslam dxslam_library
 	cmake --install $(BUILD) --prefix '$(PREFIX)'
+
+deb: setup $(BUILD)/build.ninja  ## a Debian package of the same, in the build folder (scripts/check_deb tests it)
+	cmake --build $(BUILD) -j $(JOBS) --target dxslam dxslam_library
+	cd $(BUILD) && cpack -G DEB
 
 demo: build  ## make a synthetic recording, run SLAM on it, evaluate and draw the result
 	@rm -rf out/demo
