@@ -48,7 +48,6 @@ void take_bundle_steps(benchmark::State& state) {
   BundleOptions options;
   options.min_decrease = 0.0;
   BundleStage stage;
-  stage.camera = &scene.camera;
   stage.problem = &scene.problem;
   stage.options = &options;
   stage.active.assign(scene.problem.observations.size(), 1);

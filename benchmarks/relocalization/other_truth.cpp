@@ -22,6 +22,7 @@ class OtherTruth : public RgbdSequence {
       : sequence_(std::move(sequence)), truth_(std::move(truth)) {}
   const std::string& name() const override { return sequence_->name(); }
   const Camera& camera() const override { return sequence_->camera(); }
+  const RecordingFacts& facts() const override { return sequence_->facts(); }
   std::size_t size() const override { return sequence_->size(); }
   double stamp(std::size_t index) const override { return sequence_->stamp(index); }
   std::optional<RgbdImage> read(std::size_t index) override { return sequence_->read(index); }
@@ -38,7 +39,7 @@ class OtherTruth : public RgbdSequence {
 std::unique_ptr<RgbdSequence> with_truth(std::unique_ptr<RgbdSequence> sequence,
                                          const std::string& file) {
   const std::vector<PosePair> pairs =
-      associate(load_ground_truth(file), sequence->ground_truth(), kSameStamp);
+      associate(load_ground_truth(file).poses, sequence->ground_truth(), kSameStamp);
   if (pairs.size() != sequence->size()) {
     throw InputError(
         fmt::format("{}: poses at the stamps of {} frames, expected them at all {} of {}", file,
