@@ -26,7 +26,11 @@ void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops,
 }
 
 void AutoSaver::finish() {
-  if (under_way_.valid()) attempt([this] { under_way_.get(); });
+  if (!under_way_.valid()) return;
+  attempt([this] {
+    under_way_.get();
+    on_saved_();
+  });
 }
 
 void AutoSaver::attempt(const std::function<void()>& step) {

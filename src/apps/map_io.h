@@ -15,7 +15,9 @@ namespace dxslam::apps {
 /// fails is said once on stderr; the next one tries again. One thread at a time; nothing is thrown.
 class AutoSaver {
  public:
-  AutoSaver(std::string path, MapHeader header) : path_(std::move(path)), header_(header) {}
+  /// `on_saved` is called after a save, by the thread that calls save() or finish().
+  AutoSaver(std::string path, MapHeader header, std::function<void()> on_saved)
+      : path_(std::move(path)), header_(header), on_saved_(std::move(on_saved)) {}
   /// False while a save is under way: the next one has to be left out.
   bool is_ready();
   /// Copies the map and returns. Only when it is ready.
@@ -29,6 +31,7 @@ class AutoSaver {
 
   std::string path_;
   MapHeader header_;
+  std::function<void()> on_saved_;
   bool warned_ = false;
   std::future<void> under_way_;
 };

@@ -127,7 +127,8 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
   }
   tell_notes(feature_notes(options_, system->extractor(), stored.has_value()));
   thumbnails_.emplace(settings_.thumbnails, std::move(pictures));
-  saver_.emplace(settings_.map_out, header_);
+  saver_.emplace(settings_.map_out, header_,
+                 [this] { system_->events().publish(MapSaved{settings_.map_out}); });
   if (settings_.autosave > 0 || settings_.thumbnails) {
     const int every = settings_.autosave > 0 ? settings_.autosave : kThumbnailsTidied;
     system->set_autosave(every, [this](const Map& map, const std::vector<LoopEdge>& loops) {

@@ -110,11 +110,15 @@ void Camera::measure_view(const std::string& where) {
   }
 }
 
-bool Camera::operator==(const Camera& o) const {
+bool Camera::sees_as(const Camera& o) const {
   return width == o.width && height == o.height && fx == o.fx && fy == o.fy && cx == o.cx &&
-         cy == o.cy && lens == o.lens && fps == o.fps && depth_factor == o.depth_factor &&
-         depth_baseline == o.depth_baseline && disparity_noise == o.disparity_noise &&
-         max_depth == o.max_depth && readout_time == o.readout_time;
+         cy == o.cy && lens == o.lens && depth_baseline == o.depth_baseline &&
+         disparity_noise == o.disparity_noise;
+}
+
+bool Camera::operator==(const Camera& o) const {
+  return sees_as(o) && fps == o.fps && depth_factor == o.depth_factor && max_depth == o.max_depth &&
+         readout_time == o.readout_time;
 }
 
 std::optional<Eigen::Vector2d> Camera::undistort(const Eigen::Vector2d& pixel) const {

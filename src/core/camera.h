@@ -59,6 +59,9 @@ struct Camera {
   void prepare(const std::string& where);
 
   bool has_distortion() const { return !lens.is_ideal(); }
+  /// Whether keypoints and depths of both mean the same: size, intrinsics, lens and depth noise.
+  /// How images come (fps, depth_factor, max_depth, readout_time) does not matter here.
+  bool sees_as(const Camera& other) const;
   /// All values the same.
   bool operator==(const Camera& other) const;
   bool operator!=(const Camera& other) const { return !(*this == other); }

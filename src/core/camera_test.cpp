@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/rig.h"
 
 namespace dxslam {
 namespace {
@@ -140,6 +141,18 @@ TEST(PixelBox, PutsEveryPixelIntoOneOfItsCells) {
   const float infinity = std::numeric_limits<float>::infinity();
   EXPECT_EQ(box.cell_of({-infinity, 1e30F}, 4, 2), 4U);
   EXPECT_EQ(box.cell_of({std::nanf(""), std::nanf("")}, 4, 2), 0U);
+}
+
+// How fast images come says nothing about what is in them: two recordings, one camera.
+TEST(Rig, KnowsACameraWhateverItsRate) {
+  Camera camera = freiburg1();
+  Rig rig(camera);
+  camera.fps = 29.97;
+  camera.max_depth = 4.0;
+  EXPECT_EQ(rig.add(camera), 0U);
+  camera.fx += 0.1;
+  EXPECT_EQ(rig.add(camera), 1U);
+  EXPECT_THROW(static_cast<void>(rig[2]), ContractError);
 }
 
 TEST(Camera, AcceptsARealCalibration) { EXPECT_EQ(refusal(freiburg1()), ""); }

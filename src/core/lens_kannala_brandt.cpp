@@ -43,11 +43,18 @@ std::optional<Eigen::Vector2d> undistort(const Lens::Parameters& k, const Eigen:
   constexpr double kHalfTurn = std::numbers::pi / 2.0;
   const double radius = p.norm();
   if (radius < 1e-8) return p;
-  // By bisection where Newton's step leaves the bracket: the polynomial may bend anywhere.
+  // The first angle that appears at this radius, and only up to where the polynomial turns down:
+  // fitted to the angles of an image, it may do so anywhere beyond them.
+  constexpr double kStep = kHalfTurn / 30.0;
   double low = 0.0;
-  double high = kHalfTurn;
-  if (!(radius_of(k, high) > radius)) return std::nullopt;
-  double theta = std::min(radius, 0.9 * kHalfTurn);
+  double high = kStep;
+  while (!(radius_of(k, high) >= radius)) {
+    if (!(slope_at(k, high) > 0.0) || high >= kHalfTurn) return std::nullopt;
+    low = high;
+    high = std::min(high + kStep, kHalfTurn);
+  }
+  // By bisection where Newton's step leaves the bracket.
+  double theta = 0.5 * (low + high);
   for (int i = 0; i < 60; ++i) {
     const double error = radius_of(k, theta) - radius;
     (error > 0.0 ? high : low) = theta;

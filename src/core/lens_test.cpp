@@ -112,6 +112,20 @@ TEST(Lens, DoubleSphereIsTwoProjections) {
   EXPECT_LT((distorted - expected).norm(), 1e-12);
 }
 
+// Fitted to the angles of an image, a polynomial may turn down anywhere beyond them.
+TEST(Lens, KannalaBrandtIsUndoneUpToWhereItTurns) {
+  const Lens::Parameters turning = {0.34, -0.38, 0.48, -0.27};  // turns at 1.05 rad
+  for (double angle = 0.05; angle < 1.0; angle += 0.05) {
+    const Eigen::Vector2d ideal(std::tan(angle), 0.0);
+    const auto again =
+        kKannalaBrandt.undistort(turning, kKannalaBrandt.distort(turning, ideal, nullptr));
+    ASSERT_TRUE(again) << angle;
+    EXPECT_LT((*again - ideal).norm(), 1e-8) << angle;
+  }
+  EXPECT_FALSE(kKannalaBrandt.undistort(turning, {1.3, 0.0}));
+  EXPECT_FALSE(kKannalaBrandt.undistort({-100.0, 100.0}, {0.3, 0.0})) << "folds at 3 degrees";
+}
+
 Camera fisheye_camera() {
   Camera camera;
   camera.width = 848;

@@ -21,10 +21,10 @@ class Rig {
   Rig() = default;
   explicit Rig(const Camera& camera) { add(camera); }
 
-  /// The id of the camera, which is added where no equal one is there.
+  /// The id of the camera, which is added where none sees as it does (Camera::sees_as).
   CameraId add(const Camera& camera) {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      if (cameras_[i] == camera) return static_cast<CameraId>(i);
+      if (cameras_[i].sees_as(camera)) return static_cast<CameraId>(i);
     }
     cameras_.push_back(camera);
     return static_cast<CameraId>(cameras_.size() - 1);

@@ -29,7 +29,6 @@ class PnpRansac {
         points_(points),
         pixels_(pixels),
         options_(options),
-        threshold2_(options.threshold * options.threshold),
         random_(static_cast<std::uint32_t>(options.seed)) {
     depths_.assign(points.size(), 0.0);
     for (std::size_t i = 0; i < depths.size(); ++i) {
@@ -38,6 +37,8 @@ class PnpRansac {
     rays_.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       rays_.push_back(camera.unproject(pixels[i], 1.0));
+      const double threshold = options.threshold * camera.stretch(pixels[i]);
+      thresholds2_.push_back(threshold * threshold);
       if (points[i].allFinite() && pixels[i].allFinite()) usable_.push_back(i);
     }
     mask_.assign(points.size(), 0);
@@ -120,7 +121,7 @@ class PnpRansac {
         !(std::abs(in_camera.z() - depths_[i]) <= kDepthTolerance * depths_[i])) {
       return 1.0;
     }
-    return (camera_.project(in_camera) - pixels_[i]).squaredNorm() / threshold2_;
+    return (camera_.project(in_camera) - pixels_[i]).squaredNorm() / thresholds2_[i];
   }
 
   void offer(const SE3& camera_from_world) {
@@ -207,7 +208,7 @@ class PnpRansac {
   const std::vector<Eigen::Vector3d>& points_;
   const std::vector<Eigen::Vector2d>& pixels_;
   const PnpOptions& options_;
-  double threshold2_;
+  std::vector<double> thresholds2_;  // as long as the lens makes them there
   std::mt19937 random_;
   std::vector<double> depths_;
   std::vector<Eigen::Vector3d> rays_;  ///< z = 1

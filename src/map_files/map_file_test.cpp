@@ -8,6 +8,7 @@
 
 #include "io/primitives/test_folder.h"
 #include "map_files/crc32c.h"
+#include "map_files/map_limits.h"
 #include "map_files/map_sections.h"
 #include "map_files/test_map_files.h"
 
@@ -62,6 +63,7 @@ TEST(MapFile, IsTheSameAfterLoadingAndSaving) {
 std::string unchecked_bytes(const MapSnapshot& snapshot, DescriptorCoding coding) {
   SectionWriter file(1000);
   write_header(snapshot.header, snapshot.parts.rig, file);
+  write_cameras(snapshot.parts.rig, file);
   write_keyframes(snapshot.parts, file);
   write_keypoints(snapshot.parts, snapshot.header.traits, coding, file);
   write_globals(snapshot.parts, snapshot.header.traits, coding, file);
@@ -244,7 +246,7 @@ TEST(MapFile, ReplacesMapsAlone) {
   for (const auto& action : {std::function<void(const std::string&)>(require_map_target),
                              std::function<void(const std::string&)>(
                                  [&](const std::string& path) { save_map(path, snapshot); })}) {
-    expect_input_error([&] { action(folder / "photo.jpg"); }, {"photo.jpg", "no map"});
+    expect_input_error([&] { action(folder / "photo.jpg"); }, {"photo.jpg", "not a map"});
     expect_input_error([&] { action(folder / "missing/m.dxmap"); }, {"missing/m.dxmap"});
     expect_input_error([&] { action(folder.path()); }, {folder.path()});
   }
@@ -296,7 +298,7 @@ TEST(MapFile, RefusesWhatIsNoFile) {
   const TestFolder folder;
   expect_input_error([&] { load_map(folder / "none"); }, {"none: no such file", "dxslam map"});
   expect_input_error([&] { load_map(folder.path()); }, {"not a regular file"});
-  folder.write("large", "no map");
+  folder.write("large", "not a map");
   std::filesystem::resize_file(folder / "large", std::uintmax_t{1} << 39);  // takes no place
   expect_input_error([&] { load_map(folder / "large"); }, {"is no dxslam map"});
   folder.write("trajectory.txt", "1.0 0 0 0 0 0 0 1\n");
@@ -388,6 +390,19 @@ TEST(MapFile, KeepsAllCameras) {
     EXPECT_EQ(map.keyframe(id).frame->camera, id);
   }
   EXPECT_TRUE(map.camera_of(3).contains({300.0, 200.0})) << "it is prepared";
+}
+
+TEST(MapFile, OfTooManyCamerasIsNotSavedNorLoaded) {
+  const TestFolder folder;
+  MapSnapshot snapshot = sample_snapshot();
+  for (std::size_t i = 0; i < kMostCameras; ++i) {
+    Camera camera = test_camera();
+    camera.fx += static_cast<double>(i) + 1.0;
+    snapshot.parts.rig.add(camera);
+  }
+  expect_input_error([&] { save_map(folder / "m", snapshot); }, {"m: ", "too many cameras"});
+  const std::string file = unchecked_bytes(snapshot, DescriptorCoding::kInt8);
+  expect_input_error([&] { parse_map(file.data(), file.size(), "f"); }, {"f: ", "257 cameras"});
 }
 
 TEST(MapFile, RefusesCamerasThatItDoesNotKnow) {

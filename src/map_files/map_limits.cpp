@@ -155,6 +155,7 @@ void check_numbers(const MapSnapshot& snapshot, const std::string& where) {
     if (!possible) throw InputError(fmt::format("{}: the map is not saved: {}", where, what));
   };
   const MapHeader& header = snapshot.header;
+  expect(snapshot.parts.rig.size() <= kMostCameras, "it is of too many cameras");
   for (Camera camera : snapshot.parts.rig.cameras()) camera.prepare(where);
   expect(is_possible(header.traits), "its descriptors are of an impossible kind");
   expect(is_possible_text(header.extractor) && is_possible_text(header.model_hash),

@@ -18,6 +18,7 @@ namespace dxslam {
 
 inline constexpr std::size_t kLargestMapFile = std::size_t{1} << 40;  ///< bytes
 inline constexpr std::size_t kLongestMapText = 4096;                  ///< bytes
+inline constexpr std::size_t kMostCameras = 256;
 inline constexpr std::size_t kMostFrameKeypoints = 1000000;
 inline constexpr std::size_t kLargestThumbnail = std::size_t{1} << 20;  ///< bytes
 inline constexpr double kFarthestInMap = 1e6;  ///< metres from the origin of the world

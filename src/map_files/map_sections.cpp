@@ -154,7 +154,7 @@ void write_cameras(const Rig& rig, SectionWriter& file) {
 
 Rig read_cameras(SectionReader reader, const std::string& where) {
   const std::size_t count = reader.get_count(kSmallestCamera);
-  if (count == 0) reader.fail("no camera");
+  if (count == 0 || count > kMostCameras) reader.fail(fmt::format("{} cameras", count));
   Rig rig;
   for (std::size_t i = 0; i < count; ++i) {
     Camera c;

@@ -62,6 +62,13 @@ std::vector<int> free_keypoints(const Keyframe& keyframe, bool without_depth_onl
   return free;
 }
 
+// Within `pixels` of the raw image.
+bool is_near(const Camera& camera, const Eigen::Vector3d& in_camera, const Eigen::Vector2d& pixel,
+             double pixels) {
+  const double most = pixels * camera.stretch(pixel);
+  return camera.squared_error(in_camera, pixel) <= most * most;
+}
+
 cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& rows) {
   cv::Mat selected(static_cast<int>(rows.size()), descriptors.cols, descriptors.type());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -152,9 +159,10 @@ int LocalMapper::create_points_by_triangulation(KeyframeId keyframe) {
       if (!point) continue;
       const Eigen::Vector3d in_here = here.world_from_camera.inverse() * *point;
       const Eigen::Vector3d in_there = there.world_from_camera.inverse() * *point;
-      const double most = options_.epipolar_tolerance * options_.epipolar_tolerance;
-      if (map_.camera_of(keyframe).squared_error(in_here, pixel) > most) continue;
-      if (map_.camera_of(c.keyframe).squared_error(in_there, other) > most) continue;
+      if (!is_near(map_.camera_of(keyframe), in_here, pixel, options_.epipolar_tolerance) ||
+          !is_near(map_.camera_of(c.keyframe), in_there, other, options_.epipolar_tolerance)) {
+        continue;
+      }
       const PointId id = map_.add_point(*point, keyframe, static_cast<std::uint32_t>(i));
       map_.add_observation(id, c.keyframe, static_cast<std::uint32_t>(j));
       map_.refresh_point(id);

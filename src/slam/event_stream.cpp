@@ -10,8 +10,11 @@
 namespace dxslam {
 
 MessagePtr Subscription::next(std::chrono::milliseconds timeout) {
+  constexpr std::chrono::milliseconds kLongest =
+      std::chrono::hours(24 * 365);  // of what a clock can
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, timeout, [&] { return ended_ || !messages_.empty(); });
+  changed_.wait_for(lock, std::min(timeout, kLongest),
+                    [&] { return ended_ || !messages_.empty(); });
   if (messages_.empty()) return nullptr;
   MessagePtr message = std::move(messages_.front());
   messages_.pop_front();
@@ -67,8 +70,9 @@ void EventStream::publish(Event event) {
 }
 
 void EventStream::publish_change(MapChanged change) {
+  const std::lock_guard lock(mutex_);
   ++map_version_;
-  publish(std::move(change));
+  if (has_readers()) send(std::move(change));
 }
 
 void EventStream::send(Event event) {

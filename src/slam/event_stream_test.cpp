@@ -56,6 +56,14 @@ TEST(EventStream, ASlowReaderLosesTheOldestAndIsTold) {
   EXPECT_EQ(recording_of(quick->try_next()), 0);
 }
 
+TEST(EventStream, WaitsAsLongAsOneLikes) {
+  EventStream stream;
+  const SubscriptionPtr reader = stream.subscribe();
+  std::thread later([&] { stream.publish(RecordingBegun{3}); });
+  EXPECT_EQ(recording_of(reader->next(milliseconds::max())), 3);
+  later.join();
+}
+
 TEST(EventStream, ForgetsReadersThatAreGone) {
   EventStream stream;
   EXPECT_FALSE(stream.has_readers());

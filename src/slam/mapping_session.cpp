@@ -21,7 +21,10 @@ std::vector<KeyframePose> poses_of(const Map& map, const std::vector<KeyframeId>
 std::vector<PointPosition> positions_of(const Map& map, const std::vector<PointId>& ids) {
   std::vector<PointPosition> positions;
   positions.reserve(ids.size());
-  for (const PointId id : ids) positions.push_back({id, map.point(id).position});
+  for (const PointId id : ids) {
+    const MapPoint& p = map.point(id);
+    positions.push_back({id, map.keyframe(p.observations.front().keyframe).component, p.position});
+  }
   return positions;
 }
 
@@ -62,7 +65,8 @@ void MappingSession::tell_changes(bool is_correction) {
   told.added_points = positions_of(map, changes.added_points);
   told.moved_points = positions_of(map, changes.moved_points);
   told.removed_points = changes.removed_points;
-  told.is_correction = is_correction;
+  told.is_correction =
+      is_correction && (!told.moved_keyframes.empty() || !told.moved_points.empty());
   events_.publish_change(std::move(told));
 }
 

@@ -60,11 +60,12 @@ struct KeyframePose {
 /// A position of a point, in the world of its component.
 struct PointPosition {
   PointId id = kNoId;
+  std::uint32_t component = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
 /// What one step of mapping did to the map. Together these messages give the whole map: who starts
-/// later begins with System::map_snapshot().
+/// later begins with System::whole_map().
 struct MapChanged {
   std::vector<KeyframePose> added_keyframes;
   std::vector<KeyframePose> moved_keyframes;
@@ -87,7 +88,7 @@ struct LoopConsidered {
   double largest_move = 0.0;  ///< metres, of a keyframe
 };
 
-/// The map was written, whole, to a file.
+/// An autosave has written the map, whole, to a file.
 struct MapSaved {
   std::string path;
 };

@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstring>
 #include <map>
 #include <memory>
+#include <thread>
 #include <vector>
 
+#include "map/map_parts.h"
 #include "slam/system.h"
 #include "slam/test_recording.h"
 
@@ -109,13 +113,44 @@ TEST(Observer, WhoComesLateBeginsWithTheWholeMap) {
   const auto system = make_system(false);
   for (int i = 0; i < kFrames / 2; ++i) system->process(image_of(i));
   const SubscriptionPtr reader = system->subscribe(100000);
-  const WholeMap whole = system->whole_map();
+  const WholeMap whole = system->whole_map().value();
   for (int i = kFrames / 2; i < kFrames; ++i) system->process(image_of(i));
   system->finish();
   Mirror mirror;
   mirror.apply(whole.map);
   mirror.follow(read_all(*reader), whole.map_version);
   mirror.expect_same(system->map());
+}
+
+TEST(Observer, ALoadedMapIsAddedAtOnce) {
+  const auto first = make_system(true);
+  for (int i = 0; i < kFrames; ++i) first->process(image_of(i));
+  first->finish();
+  const auto system = make_system(true);
+  const SubscriptionPtr reader = system->subscribe(100000);
+  system->load_map(Map(take_apart(first->map())), {});
+  for (int i = 20; i < kFrames; ++i) system->process(image_of(i));
+  system->finish();
+  Mirror mirror;
+  mirror.follow(read_all(*reader));
+  mirror.expect_same(system->map());
+}
+
+// Readers ask at any time, that of the end included.
+TEST(Observer, TheWholeMapIsToBeHadWhileTheRunEnds) {
+  const auto system = make_system(false);
+  const SubscriptionPtr reader = system->subscribe(16);
+  std::atomic<bool> ended{false};
+  std::thread asking([&] {
+    while (!ended) {
+      if (!system->whole_map()) ADD_FAILURE() << "the map is whole";
+    }
+  });
+  for (int i = 0; i < kFrames; ++i) system->process(image_of(i));
+  system->finish();
+  ended = true;
+  asking.join();
+  EXPECT_EQ(system->whole_map()->map.added_keyframes.size(), system->map().keyframe_count());
 }
 
 TEST(Observer, TellsOfLossPlaceAndRecordings) {
@@ -146,6 +181,10 @@ TEST(Observer, TellsOfLossPlaceAndRecordings) {
   ASSERT_FALSE(places.empty());
   EXPECT_GT(places.back().confidence, 0.5);
   EXPECT_EQ(only<RecordingBegun>(messages).size(), 1U);
+  for (const MapChanged& change : only<MapChanged>(messages)) {
+    EXPECT_TRUE(!change.is_correction || !change.moved_keyframes.empty() ||
+                !change.moved_points.empty());
+  }
   EXPECT_EQ(only<FrameTracked>(messages).back().frame.stamp, 300.0);
 }
 

@@ -31,7 +31,7 @@ bool System::has_failed() const { return engine_->has_failed(); }
 SubscriptionPtr System::subscribe(std::size_t capacity) {
   return engine_->events().subscribe(capacity);
 }
-WholeMap System::whole_map() { return engine_->whole_map(); }
+std::optional<WholeMap> System::whole_map() { return engine_->whole_map(); }
 EventStream& System::events() { return engine_->events(); }
 
 const FrameLog& System::frames() const { return engine_->frames(); }

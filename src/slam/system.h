@@ -103,8 +103,9 @@ class System {
   /// What happens inside, from now on (observer.h); ends with finish() or an error. A reader that
   /// is too slow loses the oldest messages, and nobody waits for it. Any thread.
   SubscriptionPtr subscribe(std::size_t capacity = 1024);
-  /// The map as it is now. Waits while the map is worked on. Any thread.
-  WholeMap whole_map();
+  /// The map as it is now; nothing once a change of it has failed halfway. Waits while the map is
+  /// worked on. Any thread.
+  std::optional<WholeMap> whole_map();
   /// For those who have something to tell as well: that the map was saved.
   EventStream& events();
 

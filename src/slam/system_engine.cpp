@@ -64,6 +64,7 @@ void SystemEngine::load_map(Map map, std::vector<LoopEdge> closed_loops) {
   backend_.load(std::move(map), std::move(closed_loops));
   may_be_map_ = true;
   tracking_session_.go_on_with_map();
+  events_.publish_change(dxslam::whole_map(this->map()));
   next_begins_sequence_ = true;
 }
 
@@ -116,12 +117,19 @@ void SystemEngine::finish(const MayGoOn& may_go_on) {
       const Stopwatch watch;
       backend_.finish(may_go_on, [this](const Task& change) { change_map(change); });
       times_.add("full_bundle", watch.ms());
-      mapping_session_.tell_changes(true);
     });
   }
-  if (map_whole_) note_map_size();
+  end_of_map();
   events_.end();
   error_.rethrow();
+}
+
+// Others may still ask for the whole map.
+void SystemEngine::end_of_map() {
+  const std::lock_guard lock(map_mutex_);
+  if (!map_whole_) return;
+  mapping_session_.tell_changes(true);
+  note_map_size();
 }
 
 void SystemEngine::note_map_size() {
@@ -222,12 +230,12 @@ void SystemEngine::autosave() {
   call([this] { autosave_(map(), backend_.closed_loops()); });
 }
 
-WholeMap SystemEngine::whole_map() {
+std::optional<WholeMap> SystemEngine::whole_map() {
   const std::lock_guard lock(map_mutex_);
-  if (!map_whole_) return {};
+  if (!map_whole_) return std::nullopt;
   backend_.record_changes(true);
   mapping_session_.tell_changes(false);
-  return {events_.map_version(), dxslam::whole_map(map())};
+  return WholeMap{events_.map_version(), dxslam::whole_map(map())};
 }
 
 MappingTotals SystemEngine::mapping_totals() const {

@@ -53,7 +53,7 @@ class SystemEngine {
   void finish(const MayGoOn& may_go_on);
   bool has_failed() const { return error_.there_is_one(); }
 
-  WholeMap whole_map();
+  std::optional<WholeMap> whole_map();
   EventStream& events() { return events_; }
 
   const FrameLog& frames() const { return poses_.frames(); }
@@ -87,6 +87,7 @@ class SystemEngine {
   void change_map(const Task& task);
   RelocalizationAnswer relocalize(const Frame& frame);
   void autosave();
+  void end_of_map();
   void note_map_size();
   std::uint32_t main_component() const;
 

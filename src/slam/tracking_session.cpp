@@ -94,6 +94,7 @@ bool TrackingSession::can_begin_map(const Frame& frame) const {
 
 void TrackingSession::begin_recording() {
   seeking_ = map_begun_;
+  tracking_ = false;  // nothing is lost
   go_on_elsewhere();
 }
 

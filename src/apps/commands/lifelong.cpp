@@ -101,7 +101,7 @@ Recordings open_all(const LifelongArguments& arguments) {
     require_depth(*all.back());
     const Camera& first = all.front()->camera();
     const Camera& camera = all.back()->camera();
-    if (camera != first) {
+    if (!camera.sees_as(first)) {
       throw InputError(fmt::format("{}: has another camera than {}, expected one camera for all",
                                    folder, arguments.sequences.front()));
     }

@@ -132,9 +132,8 @@ std::vector<std::string> files_of_metadata(const std::string& folder) {
   const YAML::Node all =
       parse_yaml(read_file(path, "the metadata of a ROS 2 bag", limits::kYamlBytes), path);
   std::vector<std::string> files;
-  const YAML::Node list =
-      all.IsMap() && all[kMetadata].IsMap() ? all[kMetadata]["relative_file_paths"] : YAML::Node();
-  for (std::size_t i = 0; list && list.IsSequence() && i < list.size(); ++i) {
+  const YAML::Node list = yaml_child(yaml_child(all, kMetadata), "relative_file_paths");
+  for (std::size_t i = 0; list.IsDefined() && list.IsSequence() && i < list.size(); ++i) {
     // Some recorders wrote the bag's own folder in front, so the name alone counts.
     if (!list[i].IsScalar()) continue;
     files.push_back((fs::path(folder) / fs::path(list[i].Scalar()).filename()).string());

@@ -225,6 +225,12 @@ TEST(BagFile, RefusesAnotherFileOfThatName) {
   }
 }
 
+TEST(BagFile, RefusesMetadataWithoutItsMap) {
+  const TestFolder folder;
+  write(folder / "metadata.yaml", "foo: rosbag2_bagfile_information\n");
+  EXPECT_THROW(open_bag(folder.path()), InputError);
+}
+
 TEST(SplitBag, ReadsItsPartsAsOne) {
   const TestFolder folder;
   std::filesystem::copy(kBags + "zstd.mcap", folder / "b_0.mcap");

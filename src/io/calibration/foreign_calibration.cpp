@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "core/error.h"
@@ -20,6 +21,7 @@ struct RosLens {
   const LensModel* model;
 };
 
+// The names of ROS, Kalibr and librealsense.
 constexpr std::array<RosLens, 9> kRosLenses = {{{"plumb_bob", &kRadialTangential},
                                                 {"Brown Conrady", &kRadialTangential},
                                                 {"Modified Brown Conrady", &kRadialTangential},
@@ -29,6 +31,17 @@ constexpr std::array<RosLens, 9> kRosLenses = {{{"plumb_bob", &kRadialTangential
                                                 {"kannala_brandt4", &kKannalaBrandt},
                                                 {"radtan", &kRadialTangential},
                                                 {"equi", &kKannalaBrandt}}};
+
+// Letters and digits, small: "Kannala Brandt4" is kannala_brandt4.
+std::string letters_of(const std::string& name) {
+  std::string letters;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return letters;
+}
 
 Lens make_lens(const LensModel& model, const std::vector<double>& values) {
   Lens lens;
@@ -72,8 +85,8 @@ class Document {
       if (values.size() >= least && values.size() == list.size()) return values;
     }
     if (!list && least == 0) return {};
-    throw InputError(
-        fmt::format("{}: {} is no list of {} finite numbers or more", where_, key, least));
+    throw InputError(fmt::format("{}: {} is no list of {}finite numbers", where_, key,
+                                 least > 0 ? fmt::format("at least {} ", least) : std::string()));
   }
   int pixels(const std::string& key) const {
     return static_cast<int>(std::clamp(number(key), 0.0, 1e6));
@@ -137,6 +150,11 @@ Camera from_camera_info(const Document& d) {
 }
 
 Camera from_kalibr(const Document& chain) {
+  if (chain.has("cam1")) {
+    throw InputError(chain.where() +
+                     ": a camchain of several cameras, expected cam0 alone, the one of the colour "
+                     "images");
+  }
   const Document d = chain.part("cam0");
   const std::string model = d.text("camera_model");
   const std::vector<double> size = d.numbers("resolution", 2);
@@ -176,14 +194,16 @@ Lens lens_from_ros(const std::string& distortion_model, const std::vector<double
                    const std::string& where) {
   const bool all_zero = std::all_of(coefficients.begin(), coefficients.end(),
                                     [](double value) { return value == 0.0; });
-  if (distortion_model.empty() || distortion_model == "none") {
-    if (all_zero) return {};
+  const std::string name = letters_of(distortion_model);
+  const bool is_inverse = name == "inversebrownconrady";  // the same where nothing is bent
+  if (all_zero && (name.empty() || name == "none" || is_inverse)) return {};
+  if (name.empty() || name == "none") {
     throw InputError(fmt::format("{}: distortion without the name of its model", where));
   }
   std::vector<const char*> names;
   for (const RosLens& known : kRosLenses) {
     names.push_back(known.name);
-    if (distortion_model != known.name) continue;
+    if (name != letters_of(known.name)) continue;
     const std::size_t most = known.model->parameter_count();
     // Drivers fill up with zeros, and a plumb_bob without k3 has four.
     const bool surplus = std::any_of(

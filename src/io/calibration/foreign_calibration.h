@@ -12,7 +12,7 @@ namespace dxslam {
 
 // Calibrations in the forms of others: settings of ORB-SLAM2 and ORB-SLAM3 (Camera.fx ...),
 // camera_info of ROS 1 and ROS 2 (as the calibrator writes it, or a message as text), and the
-// camchain of Kalibr (the first camera of several). Only what describes the camera is taken.
+// camchain of Kalibr, of one camera. Only what describes the camera is taken.
 
 /// The camera, if `yaml` is in one of these forms; not prepared yet. Throws InputError, naming
 /// `where`, if it is, but lacks a value or has a model that is not known.

@@ -95,12 +95,15 @@ p: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
   EXPECT_EQ(message.fy, 601.0);
   EXPECT_EQ(lens_from_ros("plumb_bob", {0, 0, 0, 0, 0}, "x"), Lens());
   EXPECT_EQ(lens_from_ros("", {}, "x"), Lens());
+  EXPECT_EQ(lens_from_ros("None", {0, 0}, "x"), Lens());
+  EXPECT_EQ(lens_from_ros("Inverse Brown Conrady", {0, 0, 0, 0, 0}, "x"), Lens());
+  EXPECT_EQ(lens_from_ros("Kannala Brandt4", {1, 0, 0, 0}, "x").model, &kKannalaBrandt);
   EXPECT_EQ(lens_from_ros("equidistant", {0, 0, 0, 0}, "x").model, &kKannalaBrandt);
   expect_input_error([] { lens_from_ros("plumb_bob", {0, 0, 0, 0, 0, 1}, "x"); },
                      {"x: 6 numbers", "at most 5"});
   expect_input_error([] { lens_from_ros("fov", {1}, "x"); }, {"x: ", "'fov'", "plumb_bob"});
   expect_input_error([] { parse("camera_matrix: {data: [1, 2]}\n"); },
-                     {"c.yaml: camera_matrix is no list of 9"});
+                     {"c.yaml: camera_matrix is no list of at least 9"});
 }
 
 TEST(ForeignCalibration, OfKalibr) {
@@ -120,9 +123,9 @@ TEST(ForeignCalibration, OfKalibr) {
   distortion_model: none
   intrinsics: [-0.2, 0.59, 157.0, 157.1, 254.0, 256.0]
   resolution: [512, 512]
-cam1:
-  camera_model: pinhole
 )");
+  expect_input_error([] { parse("cam0: {camera_model: ds}\ncam1: {camera_model: ds}\n"); },
+                     {"c.yaml: a camchain of several cameras"});
   EXPECT_EQ(sphere.lens.model, &kDoubleSphere);
   EXPECT_EQ(sphere.lens.parameters[1], 0.59);
   EXPECT_EQ(sphere.cx, 254.0);

@@ -152,6 +152,8 @@ void pair_streams(BagPictures& pictures, const SequenceOptions& options, Sequenc
                   pictures.depth() ? pictures.depth()->name : "depth", options.max_association_s));
 }
 
+constexpr double kWorstInverse = 0.5;  // pixels
+
 // The camera of the image as it is on the topic: raw, or rectified where its name says so.
 Camera camera_of(const FoundCameraInfo& found, const PictureStream& stream, bool inverse = false) {
   const RosCameraInfo& info = found.info;
@@ -173,7 +175,13 @@ Camera camera_of(const FoundCameraInfo& found, const PictureStream& stream, bool
   std::array<double, 5> coefficients{};
   std::copy_n(d.begin(), std::min(d.size(), coefficients.size()), coefficients.begin());
   camera.prepare(found.topic);  // divides by the focal lengths
-  set_inverse_distortion(coefficients, camera);
+  const double error = set_inverse_distortion(coefficients, camera);
+  if (!(error < kWorstInverse)) {
+    throw InputError(fmt::format(
+        "{}: its distortion the other way round is {:.1f} pixels off, expected less than {:g}; "
+        "--calibration gives another",
+        found.topic, error, kWorstInverse));
+  }
   return camera;
 }
 
@@ -236,7 +244,9 @@ void register_depth(BagPictures& pictures, SequenceListing& listing) {
         listing.name, depth.name, depth.size.width, depth.size.height, color.name, color_size.width,
         color_size.height));
   }
-  Camera lens = camera_of(*found, depth);
+  const std::string own = realsense_stream(depth.name);
+  const bool inverse = !own.empty() && has_inverse_distortion(pictures.bag(), own);
+  Camera lens = camera_of(*found, depth, inverse);
   if (registered) {
     if (!same_lens(lens, listing.camera)) {
       lens.prepare(found->topic);

@@ -59,12 +59,11 @@ void DepthRegistration::splat(const Eigen::Vector3d& point, cv::Mat& registered)
   // A raw unit is the least depth that can be written down.
   if (point.z() < 1.0 || point.z() >= kInvalid) return;
   Eigen::Vector2d pixel = color_.project(point);
-  // Far outside, the polynomial of the distortion may come back into the image.
-  if (std::abs(pixel.x() - color_.cx) > color_.width ||
-      std::abs(pixel.y() - color_.cy) > color_.height) {
-    return;
+  if (color_.has_distortion()) {
+    // Outside, the polynomial of the distortion may come back into the image.
+    if (!color_.contains(pixel)) return;
+    pixel = color_.distort(pixel);
   }
-  if (color_.has_distortion()) pixel = color_.distort(pixel);
   // Half-open, so that a footprint of one pixel is the nearest pixel alone.
   const auto first = [this](double at) {
     return std::max(0, static_cast<int>(std::ceil(at - half_footprint_)));

@@ -42,6 +42,7 @@ TEST(DepthRegistration, PutsReadingsWhereTheColourCameraSeesThem) {
   Camera color = color_camera();
   for (const double k1 : {0.0, 0.2}) {
     color.lens.parameters[0] = k1;
+    color.prepare("test");
     const DepthCamera depth = depth_camera();
     const DepthRegistration registration(color, depth);
     for (const cv::Point at : {cv::Point(20, 30), cv::Point(80, 60), cv::Point(130, 100)}) {
