@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include "core/lens.h"
+#include "core/lens_bending.h"
 
 namespace dxslam {
 namespace {
@@ -9,19 +10,10 @@ enum Parameter { kK1, kK2, kP1, kP2, kK3 };
 
 Eigen::Vector2d distort(const Lens::Parameters& c, const Eigen::Vector2d& p,
                         Eigen::Matrix2d* jacobian) {
-  const double x = p.x();
-  const double y = p.y();
   const double r2 = p.squaredNorm();
   const double radial = 1.0 + r2 * (c[kK1] + r2 * (c[kK2] + r2 * c[kK3]));
-  if (jacobian != nullptr) {
-    const double slope =
-        2.0 * (c[kK1] + r2 * (2.0 * c[kK2] + r2 * 3.0 * c[kK3]));  // of radial, by r2 / 2
-    const double mixed = x * y * slope + 2.0 * (c[kP1] * x + c[kP2] * y);
-    *jacobian << radial + x * x * slope + 2.0 * c[kP1] * y + 6.0 * c[kP2] * x, mixed, mixed,
-        radial + y * y * slope + 6.0 * c[kP1] * y + 2.0 * c[kP2] * x;
-  }
-  return {x * radial + 2.0 * c[kP1] * x * y + c[kP2] * (r2 + 2.0 * x * x),
-          y * radial + c[kP1] * (r2 + 2.0 * y * y) + 2.0 * c[kP2] * x * y};
+  const double slope = 2.0 * (c[kK1] + r2 * (2.0 * c[kK2] + r2 * 3.0 * c[kK3]));
+  return bend_by_brown(p, radial, slope, c[kP1], c[kP2], jacobian);
 }
 
 std::optional<Eigen::Vector2d> undistort(const Lens::Parameters& c, const Eigen::Vector2d& p) {

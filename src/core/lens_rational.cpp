@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
 #include "core/lens.h"
+#include "core/lens_bending.h"
 
 namespace dxslam {
 namespace {
@@ -9,22 +10,14 @@ enum Parameter { kK1, kK2, kP1, kP2, kK3, kK4, kK5, kK6 };
 
 Eigen::Vector2d distort(const Lens::Parameters& c, const Eigen::Vector2d& p,
                         Eigen::Matrix2d* jacobian) {
-  const double x = p.x();
-  const double y = p.y();
   const double r2 = p.squaredNorm();
   const double above = 1.0 + r2 * (c[kK1] + r2 * (c[kK2] + r2 * c[kK3]));
   const double below = 1.0 + r2 * (c[kK4] + r2 * (c[kK5] + r2 * c[kK6]));
   const double radial = above / below;
-  if (jacobian != nullptr) {
-    const double above_slope = c[kK1] + r2 * (2.0 * c[kK2] + r2 * 3.0 * c[kK3]);  // by r2
-    const double below_slope = c[kK4] + r2 * (2.0 * c[kK5] + r2 * 3.0 * c[kK6]);
-    const double slope = 2.0 * (above_slope - radial * below_slope) / below;
-    const double mixed = x * y * slope + 2.0 * (c[kP1] * x + c[kP2] * y);
-    *jacobian << radial + x * x * slope + 2.0 * c[kP1] * y + 6.0 * c[kP2] * x, mixed, mixed,
-        radial + y * y * slope + 6.0 * c[kP1] * y + 2.0 * c[kP2] * x;
-  }
-  return {x * radial + 2.0 * c[kP1] * x * y + c[kP2] * (r2 + 2.0 * x * x),
-          y * radial + c[kP1] * (r2 + 2.0 * y * y) + 2.0 * c[kP2] * x * y};
+  const double above_slope = c[kK1] + r2 * (2.0 * c[kK2] + r2 * 3.0 * c[kK3]);  // by r2
+  const double below_slope = c[kK4] + r2 * (2.0 * c[kK5] + r2 * 3.0 * c[kK6]);
+  const double slope = 2.0 * (above_slope - radial * below_slope) / below;
+  return bend_by_brown(p, radial, slope, c[kP1], c[kP2], jacobian);
 }
 
 std::optional<Eigen::Vector2d> undistort(const Lens::Parameters& c, const Eigen::Vector2d& p) {
