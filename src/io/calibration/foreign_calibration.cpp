@@ -61,10 +61,7 @@ class Document {
     return {yaml_child(root_, key), fmt::format("{}: {}", where_, key)};
   }
 
-  std::string text(const std::string& key) const {
-    const YAML::Node node = yaml_child(root_, key);
-    return node && node.IsScalar() ? node.Scalar() : std::string();
-  }
+  std::string text(const std::string& key) const { return yaml_scalar(yaml_child(root_, key)); }
   double number(const std::string& key) const {
     if (const auto value = parse_number(text(key)); value && std::isfinite(*value)) return *value;
     throw InputError(fmt::format("{}: {} is missing or no number, expected it there", where_, key));
@@ -76,14 +73,8 @@ class Document {
   std::vector<double> numbers(const std::string& key, std::size_t least) const {
     YAML::Node list = yaml_child(root_, key);
     if (list && list.IsMap()) list.reset(yaml_child(list, "data"));
-    std::vector<double> values;
-    if (list && list.IsSequence()) {
-      for (const YAML::Node& item : list) {
-        const auto value = parse_number(item.IsScalar() ? item.Scalar() : "");
-        if (value && std::isfinite(*value)) values.push_back(*value);
-      }
-      if (values.size() >= least && values.size() == list.size()) return values;
-    }
+    const auto values = finite_numbers(list);
+    if (values && values->size() >= least) return *values;
     if (!list && least == 0) return {};
     throw InputError(fmt::format("{}: {} is no list of {}finite numbers", where_, key,
                                  least > 0 ? fmt::format("at least {} ", least) : std::string()));
@@ -178,16 +169,6 @@ Camera from_kalibr(const Document& chain) {
   return camera;
 }
 
-// OpenCV's dialect begins with "%YAML:1.0", which is not YAML.
-std::string without_opencv_directive(const std::string& yaml) {
-  std::string text(without_byte_order_mark(yaml));
-  if (!text.empty() && text.front() == '%') {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    text.replace(0, end, end, ' ');
-  }
-  return text;
-}
-
 }  // namespace
 
 Lens lens_from_ros(const std::string& distortion_model, const std::vector<double>& coefficients,
@@ -221,7 +202,7 @@ Lens lens_from_ros(const std::string& distortion_model, const std::vector<double
 }
 
 std::optional<Camera> parse_foreign_calibration(const std::string& yaml, const std::string& where) {
-  const YAML::Node root = parse_yaml(without_opencv_directive(yaml), where);
+  const YAML::Node root = parse_opencv_yaml(yaml, where);
   if (!root.IsMap()) return std::nullopt;
   const Document d(root, where);
   if (d.has("Camera.fx") || d.has("Camera1.fx")) return from_orb_slam(d);

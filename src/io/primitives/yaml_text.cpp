@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "core/error.h"
@@ -76,6 +78,30 @@ YAML::Node yaml_child(const YAML::Node& node, const std::string& key) {
   if (!node.IsDefined() || !node.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
   const YAML::Node value = node[key];
   return value ? value : YAML::Node(YAML::NodeType::Undefined);
+}
+
+std::string yaml_scalar(const YAML::Node& node) {
+  return node.IsDefined() && node.IsScalar() ? node.Scalar() : std::string();
+}
+
+std::optional<std::vector<double>> finite_numbers(const YAML::Node& list) {
+  if (!list.IsDefined() || !list.IsSequence()) return std::nullopt;
+  std::vector<double> values;
+  for (const YAML::Node& item : list) {
+    const auto value = parse_number(yaml_scalar(item));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    values.push_back(*value);
+  }
+  return values;
+}
+
+YAML::Node parse_opencv_yaml(const std::string& text, const std::string& where) {
+  std::string plain(without_byte_order_mark(text));
+  if (!plain.empty() && plain.front() == '%') {
+    const std::size_t end = std::min(plain.find('\n'), plain.size());
+    plain.replace(0, end, end, ' ');
+  }
+  return parse_yaml(plain, where);
 }
 
 int yaml_line(const YAML::Mark& mark) { return mark.line < 0 ? 1 : mark.line + 1; }

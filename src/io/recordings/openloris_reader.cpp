@@ -23,57 +23,32 @@ namespace {
 constexpr const char* kColorFrame = "d400_color_optical_frame";
 constexpr const char* kBaseFrame = "base_link";
 
-// The dataset's files are OpenCV's dialect, whose first line "%YAML:1.0" is not YAML.
 YAML::Node load_opencv_yaml(const std::string& path) {
-  std::string text = read_file(path, "a YAML file of OpenLORIS-Scene", limits::kYamlBytes);
-  text.erase(0, text.size() - without_byte_order_mark(text).size());
-  if (!text.empty() && text.front() == '%') {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    text.replace(0, end, end, ' ');
-  }
-  return parse_yaml(text, path);
-}
-
-// Entry `key`, or an empty node where there is none: yaml-cpp throws when asked about missing ones.
-YAML::Node child(const YAML::Node& node, const char* key) {
-  if (!node.IsMap()) return {};
-  const YAML::Node value = node[key];
-  return value ? value : YAML::Node();
-}
-
-std::string scalar_text(const YAML::Node& map, const char* key) {
-  const YAML::Node node = child(map, key);
-  return node.IsScalar() ? node.Scalar() : std::string();
+  return parse_opencv_yaml(read_file(path, "a YAML file of OpenLORIS-Scene", limits::kYamlBytes),
+                           path);
 }
 
 // `count` finite numbers of the "data" list of an OpenCV matrix.
 std::vector<double> matrix_data(const YAML::Node& matrix, std::size_t count,
                                 const std::string& path, const std::string& what) {
-  const YAML::Node data = child(matrix, "data");
-  std::vector<double> values;
-  if (data.IsSequence()) {
-    for (const YAML::Node& item : data) {
-      const auto value = parse_number(item.IsScalar() ? item.Scalar() : "");
-      if (value && std::isfinite(*value)) values.push_back(*value);
-    }
-  }
-  if (values.size() == count && data.size() == count) return values;
+  const auto values = finite_numbers(yaml_child(matrix, "data"));
+  if (values && values->size() == count) return *values;
   throw InputError(fmt::format("{}: {} has no list of {} finite numbers", path, what, count));
 }
 
 double scalar(const YAML::Node& map, const char* key, const std::string& path) {
-  const auto value = parse_number(scalar_text(map, key));
+  const auto value = parse_number(yaml_scalar(yaml_child(map, key)));
   if (value && std::isfinite(*value)) return *value;
   throw InputError(fmt::format("{}: {} of {} is missing or no number", path, key, kColorFrame));
 }
 
 // Intrinsics of the colour camera: fx cx fy cy, then k1 k2 p1 p2 k3.
 void read_sensors(const std::string& path, Camera& camera) {
-  const YAML::Node sensor = child(load_opencv_yaml(path), kColorFrame);
-  if (!sensor.IsMap()) {
+  const YAML::Node sensor = yaml_child(load_opencv_yaml(path), kColorFrame);
+  if (!sensor.IsDefined() || !sensor.IsMap()) {
     throw InputError(fmt::format("{}: no sensor {} in it", path, kColorFrame));
   }
-  const auto pinhole = matrix_data(child(sensor, "intrinsics"), 4, path, "intrinsics");
+  const auto pinhole = matrix_data(yaml_child(sensor, "intrinsics"), 4, path, "intrinsics");
   camera.width = static_cast<int>(std::clamp(scalar(sensor, "width", path), 0.0, 1e6));
   camera.height = static_cast<int>(std::clamp(scalar(sensor, "height", path), 0.0, 1e6));
   camera.fps = scalar(sensor, "fps", path);
@@ -81,23 +56,24 @@ void read_sensors(const std::string& path, Camera& camera) {
   camera.cx = pinhole[1];
   camera.fy = pinhole[2];
   camera.cy = pinhole[3];
-  if (child(sensor, "distortion_coefficients").IsNull()) return;
-  const auto distortion =
-      matrix_data(child(sensor, "distortion_coefficients"), 5, path, "distortion_coefficients");
+  const YAML::Node coefficients = yaml_child(sensor, "distortion_coefficients");
+  if (!coefficients.IsDefined() || coefficients.IsNull()) return;
+  const auto distortion = matrix_data(coefficients, 5, path, "distortion_coefficients");
   std::copy(distortion.begin(), distortion.end(), camera.lens.parameters.begin());
 }
 
 std::optional<SE3> read_base_from_color(const std::string& path) {
-  const YAML::Node list = child(load_opencv_yaml(path), "trans_matrix");
-  if (!list.IsSequence()) {
+  const YAML::Node list = yaml_child(load_opencv_yaml(path), "trans_matrix");
+  if (!list.IsDefined() || !list.IsSequence()) {
     throw InputError(fmt::format("{}: no list trans_matrix in it", path));
   }
   for (const YAML::Node& item : list) {
-    if (scalar_text(item, "parent_frame") != kBaseFrame ||
-        scalar_text(item, "child_frame") != kColorFrame) {
+    if (yaml_scalar(yaml_child(item, "parent_frame")) != kBaseFrame ||
+        yaml_scalar(yaml_child(item, "child_frame")) != kColorFrame) {
       continue;
     }
-    const auto data = matrix_data(child(item, "matrix"), 16, path, "matrix of the colour camera");
+    const auto data =
+        matrix_data(yaml_child(item, "matrix"), 16, path, "matrix of the colour camera");
     double values[16];
     std::copy(data.begin(), data.end(), values);
     return pose_from_row_major(values, at_line(path, yaml_line(item.Mark())));
