@@ -2,10 +2,16 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <fmt/format.h>
+
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "io/bags/bag_file.h"
+#include "io/bags/random_access_file.h"
 
 namespace dxslam {
 
@@ -27,6 +33,28 @@ class IndexedBag : public BagFile {
   /// Throws InputError.
   virtual std::string unpack(std::uint64_t position) const = 0;
   void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
+
+  /// Calls add(at, record) with what record_at(at) finds, record behind record, from byte `at` to
+  /// `end`. Where a record is cut off (nothing was found) or damaged (either threw InputError), the
+  /// rest is left and a note says so.
+  template <class RecordAt, class Add>
+  void scan_records(const RandomAccessFile& file, std::uint64_t at, std::uint64_t end,
+                    const RecordAt& record_at, const Add& add) {
+    try {
+      while (at < end) {
+        const auto record = record_at(at);
+        if (!record) {
+          note(fmt::format("{}: cut off, what is whole up to byte {} of {} is used", file.path(),
+                           at, file.size()));
+          return;
+        }
+        add(at, *record);
+        at = record->end();
+      }
+    } catch (const InputError& e) {
+      note(fmt::format("{}; what lies before byte {} is used", e.what(), at));
+    }
+  }
 
   std::vector<BagTopic> topics_;
   std::vector<BagEntry> entries_;

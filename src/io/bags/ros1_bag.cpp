@@ -133,21 +133,9 @@ class Ros1Bag : public IndexedBag {
   }
 
   void scan() {
-    std::uint64_t at = kMagic.size();
-    try {
-      while (at < file_.size()) {
-        const std::optional<Record> record = record_at(at);
-        if (!record) {
-          note(fmt::format("{}: cut off, what is whole up to byte {} of {} is used", file_.path(),
-                           at, file_.size()));
-          break;
-        }
-        add_record(at, *record);
-        at = record->end();
-      }
-    } catch (const InputError& e) {
-      note(fmt::format("{}; what lies before byte {} is used", e.what(), at));
-    }
+    scan_records(
+        file_, kMagic.size(), file_.size(), [this](std::uint64_t at) { return record_at(at); },
+        [this](std::uint64_t at, const Record& record) { add_record(at, record); });
     add_messages_of_unindexed_chunk();
     name_topics();
   }
