@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include "core/frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -54,7 +55,13 @@ void check_inputs(const RgbdImage& image, const Features& features, const Camera
           "descriptors must be CV_32FC1 or CV_8UC1");
 }
 
-// The rows that are left where some keypoints were left out.
+}  // namespace
+
+int Frame::depth_count() const {
+  return static_cast<int>(
+      std::count_if(depths.begin(), depths.end(), [](float depth) { return depth > 0.0F; }));
+}
+
 cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& rows) {
   if (static_cast<int>(rows.size()) == descriptors.rows) return descriptors;
   cv::Mat kept(static_cast<int>(rows.size()), descriptors.cols, descriptors.type());
@@ -63,8 +70,6 @@ cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& rows) {
   }
   return kept;
 }
-
-}  // namespace
 
 FramePtr make_frame(const RgbdImage& image, const Features& features, const Camera& camera) {
   check_inputs(image, features, camera);

@@ -39,9 +39,13 @@ struct Frame {
 
   std::size_t size() const { return pixels.size(); }
   bool has_depth(std::size_t i) const { return depths[i] > 0.0F; }
+  int depth_count() const;
 };
 
 using FramePtr = std::shared_ptr<const Frame>;
+
+/// These rows of descriptors, rising; shared with `descriptors` where they are all.
+cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& rows);
 
 /// What an image says of a point of the scene: the one form in which the optimisers take it. A
 /// depth is a disparity here, which has the same deviation as the pixel (Camera::bf). Plain data.

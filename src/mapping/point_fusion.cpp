@@ -69,14 +69,6 @@ bool is_near(const Camera& camera, const Eigen::Vector3d& in_camera, const Eigen
   return camera.squared_error(in_camera, pixel) <= most * most;
 }
 
-cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& rows) {
-  cv::Mat selected(static_cast<int>(rows.size()), descriptors.cols, descriptors.type());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    descriptors.row(rows[i]).copyTo(selected.row(static_cast<int>(i)));
-  }
-  return selected;
-}
-
 }  // namespace
 
 std::vector<PointId> points_seen(const Map& map, KeyframeId keyframe) {

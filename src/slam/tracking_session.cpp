@@ -2,7 +2,6 @@
 // Copyright 2026 The dxslam authors
 #include "slam/tracking_session.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace dxslam {
@@ -87,9 +86,7 @@ void TrackingSession::begin_new_map_if_lost(const Frame& frame, bool mapping) {
 
 // A covered lens or a bare wall is no reason to give up a map.
 bool TrackingSession::can_begin_map(const Frame& frame) const {
-  std::ptrdiff_t with_depth = 0;
-  for (std::size_t i = 0; i < frame.size(); ++i) with_depth += frame.has_depth(i) ? 1 : 0;
-  return with_depth >= options_.tracking.min_start_points;
+  return frame.depth_count() >= options_.tracking.min_start_points;
 }
 
 void TrackingSession::begin_recording() {

@@ -25,11 +25,6 @@ int count_map_points(const std::vector<KnownPoint>& known) {
       std::count_if(known.begin(), known.end(), [](const KnownPoint& k) { return k.id != kNoId; }));
 }
 
-int count_depths(const Frame& frame) {
-  return static_cast<int>(std::count_if(frame.depths.begin(), frame.depths.end(),
-                                        [](float depth) { return depth > 0.0F; }));
-}
-
 // Mapping keeps a copy of a frame of its own.
 bool is_same_image(const Frame& a, const Frame& b) {
   return a.index == b.index && a.stamp == b.stamp && a.size() == b.size();
@@ -173,7 +168,7 @@ TrackedFrame Tracker::conclude(const FramePtr& frame, const OptionalEstimate& es
 }
 
 Tracker::OptionalEstimate Tracker::start(const Frame& frame) const {
-  if (count_depths(frame) < options_.min_start_points) return std::nullopt;
+  if (frame.depth_count() < options_.min_start_points) return std::nullopt;
   return Estimate{};
 }
 
@@ -430,7 +425,7 @@ TrackedFrame Tracker::report(const FramePtr& frame, const OptionalEstimate& esti
   result.stamp = frame->stamp;
   result.state = state_;
   result.keypoints = static_cast<int>(frame->size());
-  result.keypoints_with_depth = count_depths(*frame);
+  result.keypoints_with_depth = frame->depth_count();
   if (!estimate) return result;
   result.world_from_camera = estimate->world_from_camera;
   result.inliers = estimate->map_points;
