@@ -111,8 +111,8 @@ class Map {
   void count_covisibility();
 
   Rig rig_;
-  Journal<KeyframeId> keyframe_journal_;
-  Journal<PointId> point_journal_;
+  Journal keyframe_journal_;
+  Journal point_journal_;
   IdTable<Keyframe> keyframes_;
   IdTable<MapPoint> points_;
   RemovedKeyframes removed_;

@@ -8,15 +8,15 @@
 namespace dxslam {
 namespace {
 
-template <class Id>
-void sort_unique(std::vector<Id>& ids) {
+using Ids = std::vector<Journal::Id>;
+
+void sort_unique(Ids& ids) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
 
-template <class Id>
-std::vector<Id> without(const std::vector<Id>& ids, const std::vector<Id>& others) {
-  std::vector<Id> rest;
+Ids without(const Ids& ids, const Ids& others) {
+  Ids rest;
   std::set_difference(ids.begin(), ids.end(), others.begin(), others.end(),
                       std::back_inserter(rest));
   return rest;
@@ -24,15 +24,12 @@ std::vector<Id> without(const std::vector<Id>& ids, const std::vector<Id>& other
 
 }  // namespace
 
-template <class Id>
-void Journal<Id>::take(std::vector<Id>& added, std::vector<Id>& moved, std::vector<Id>& removed) {
-  for (std::vector<Id>* list : {&added_, &moved_, &removed_}) sort_unique(*list);
+void Journal::take(Ids& added, Ids& moved, Ids& removed) {
+  for (Ids* list : {&added_, &moved_, &removed_}) sort_unique(*list);
   added = without(added_, removed_);
   removed = without(removed_, added_);
   moved = without(without(moved_, removed_), added_);
   clear();
 }
-
-template class Journal<std::uint32_t>;
 
 }  // namespace dxslam

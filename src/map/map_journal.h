@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "map/map_types.h"
@@ -20,9 +21,10 @@ struct MapChanges {
 };
 
 /// Takes down what is done to one kind of things with ids. Belongs to the thread of its map.
-template <class Id>
 class Journal {
  public:
+  using Id = std::uint32_t;
+
   void keep(bool on) {
     on_ = on;
     clear();
