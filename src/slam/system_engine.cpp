@@ -64,7 +64,7 @@ void SystemEngine::load_map(Map map, std::vector<LoopEdge> closed_loops) {
   backend_.load(std::move(map), std::move(closed_loops));
   may_be_map_ = true;
   tracking_session_.go_on_with_map();
-  events_.publish_change(dxslam::whole_map(this->map()));
+  events_.publish_change(events_.has_readers() ? dxslam::whole_map(this->map()) : MapChanged());
   next_begins_sequence_ = true;
 }
 
