@@ -26,6 +26,7 @@ from cli_test import BAD_INPUT, INTERRUPTED, PROGRAM, TIMEOUT, TRACKING_FAILED, 
 FRAMES = 30
 WIDTH, HEIGHT = 640, 480  # of the recording
 ENOUGH_FOR_SMALL_BLOCKS = 500_000  # but not for an image of this size
+CANNOT_BE_LOADED = 127  # exit code of the dynamic loader
 LEAST_SHARE = 0.1  # of the images with a pose, for exit code 0
 RESULTS = {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "trajectory.svg",
            "summary.json"}
@@ -332,6 +333,20 @@ class InnerErrors(Outputs):
         resource.prlimit(process.pid, resource.RLIMIT_AS, 2 * (resource.RLIM_INFINITY,))
         said = process.communicate(timeout=TIMEOUT)[1]
         return process.returncode, said
+
+    def test_too_little_memory_is_no_bug(self):
+        told = 0
+        for megabytes in (100, 120, 140, 200):
+            limited = (f"ulimit -v {megabytes * 1024}; exec {PROGRAM} synth {self.out} --force "
+                       "--frames 2 --threads 1")
+            done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True,
+                                  stdin=subprocess.DEVNULL, timeout=TIMEOUT)
+            if done.returncode == CANNOT_BE_LOADED:
+                continue
+            self.assertIn(done.returncode, (0, BAD_INPUT), done.stderr)
+            self.assertNotIn("internal error", done.stderr)
+            told += "memory" in done.stderr
+        self.assertGreater(told, 0)
 
     def test_cost_a_run_only_their_images(self):
         code, said = self.without_memory_for_a_while(

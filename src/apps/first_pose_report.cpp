@@ -35,6 +35,7 @@ void FirstPoseReport::offer(const RgbdImage& image, double max_depth) {
 
 void FirstPoseReport::note(const TrackedFrame& frame) {
   if (has_pose_) return;
+  ++frames_;
   has_pose_ = frame.state == TrackingState::kTracking;
   keypoints_ = std::max(keypoints_, frame.keypoints);
   known_depths_ = std::max(known_depths_, frame.keypoints_with_depth);
@@ -52,6 +53,9 @@ std::optional<std::string> FirstPoseReport::why_none(const SystemOptions& option
         "the nearest depth reading of {} images is {:.3g} m, beyond max_depth of the camera ({:g} "
         "m): is its depth_factor right?",
         images_, nearest_, max_depth_);
+  }
+  if (frames_ == 0 && !stopped) {
+    return fmt::format("all {} images with depth failed before tracking", with_depth_);
   }
   if (in_stored_map && !finds_places) {
     return "no keyframe of the map has a global descriptor, so that no frame can be found in it";

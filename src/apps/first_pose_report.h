@@ -31,9 +31,10 @@ class FirstPoseReport {
   std::size_t images_ = 0;
   std::size_t with_depth_ = 0;  // images with a reading that is not too far
   double max_depth_ = 0.0;
-  float nearest_ = 0.0F;  // reading; 0 while there is none
-  int keypoints_ = 0;     // most in one frame
-  int known_depths_ = 0;  // the same, of those with depth
+  float nearest_ = 0.0F;    // reading; 0 while there is none
+  std::size_t frames_ = 0;  // images that tracking has seen
+  int keypoints_ = 0;       // most in one frame
+  int known_depths_ = 0;    // the same, of those with depth
 };
 
 }  // namespace dxslam::apps

@@ -3,14 +3,13 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <sstream>
 
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/failure.h"
 #include "apps/process.h"
 #include "apps/usage.h"
-#include "core/error.h"
 
 namespace dxslam::apps {
 namespace {
@@ -54,15 +53,10 @@ int run_command(int argc, char** argv) {
     return e.get_exit_code();
   } catch (const CLI::ParseError& e) {
     return say_usage(app, argc, argv, e);
-  } catch (const InputError& e) {
-    warn("{}", e.what());
-    return kBadInput;
-  } catch (const std::filesystem::filesystem_error& e) {
-    warn("{}: {}", e.path1().string(), e.code().message());
-    return kBadInput;
-  } catch (const std::exception& e) {
-    warn("internal error: {}", e.what());
-    return kInternalError;
+  } catch (const std::exception&) {
+    const Failure failure = current_failure();
+    warn("{}", failure.sentence);
+    return failure.code;
   }
   return kSuccess;
 }

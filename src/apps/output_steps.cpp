@@ -2,16 +2,13 @@
 // Copyright 2026 The dxslam authors
 #include "apps/output_steps.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <exception>
-#include <filesystem>
 #include <utility>
 
 #include "apps/commands.h"
 #include "apps/console.h"
-#include "core/error.h"
+#include "apps/failure.h"
 
 namespace dxslam::apps {
 
@@ -19,13 +16,10 @@ bool OutputSteps::run(const std::function<void()>& write) {
   try {
     write();
     return true;
-  } catch (const InputError& e) {
-    keep(e.what());
-  } catch (const std::filesystem::filesystem_error& e) {
-    keep(fmt::format("{}: {}", e.path1().string(), e.code().message()));
-  } catch (const std::exception& e) {
-    keep(fmt::format("internal error: {}", e.what()));
-    bug_ = true;
+  } catch (const std::exception&) {
+    Failure failure = current_failure();
+    bug_ = bug_ || failure.code == kInternalError;
+    keep(std::move(failure.sentence));
   }
   return false;
 }

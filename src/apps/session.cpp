@@ -11,6 +11,7 @@
 
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/recording_report.h"
 #include "apps/system_setup.h"
 #include "core/error.h"
 #include "evaluation/openloris_result.h"
