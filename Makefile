@@ -1,7 +1,7 @@
 # The common tasks by name; `make help` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build install deb demo test train benchmark format check-format tidy asan tsan clean
+.PHONY: help setup build install deb demo docs test train benchmark format check-format tidy asan tsan clean
 
 JOBS ?= $(shell nproc)
 PRESET ?= release
@@ -58,6 +58,10 @@ format:  ## format all C++ sources
 
 check-format:  ## fail if a C++ source is not formatted
 	@$(CLANG_FORMAT) --dry-run --Werror $(SOURCES)
+
+docs: SETUP_OPTIONS = --dev
+docs: setup  ## the pages and the reference of the library, in build/docs/html
+	scripts/make_docs
 
 tidy: SETUP_OPTIONS = --dev
 tidy: PRESET = dev

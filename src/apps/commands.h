@@ -6,7 +6,7 @@
 
 namespace dxslam::apps {
 
-/// Exit codes of the program, as the README lists them.
+/// Exit codes of the program, as docs/commands.md lists them.
 enum ExitCode : int {
   kSuccess = 0,
   kBadUsage = 2,        ///< unknown command or option

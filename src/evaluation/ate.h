@@ -11,11 +11,13 @@
 
 namespace dxslam {
 
+/// How trajectories are compared.
 struct AteOptions {
   Alignment alignment = Alignment::kSe3;
   double max_difference = 0.01;  ///< seconds between the stamps of two poses that are compared
 };
 
+/// What evaluate_ate() finds.
 struct AteReport {
   ErrorStatistics position;     ///< metres
   Sim3 truth_from_estimate;     ///< the alignment found

@@ -8,6 +8,7 @@
 
 namespace dxslam {
 
+/// Which relative motions are compared.
 struct RpeOptions {
   enum class Unit { kFrames, kSeconds };
 
@@ -19,6 +20,7 @@ struct RpeOptions {
   double max_difference = 0.01;            ///< as in AteOptions
 };
 
+/// What evaluate_rpe() finds.
 struct RpeReport {
   ErrorStatistics translation;  ///< metres
   ErrorStatistics rotation;     ///< degrees

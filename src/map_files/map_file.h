@@ -47,6 +47,7 @@ MapSnapshot take_snapshot(const MapHeader& header, const Map& map,
                           const std::vector<StoredLoopEdge>& loops = {},
                           const std::vector<std::string>& thumbnails = {});
 
+/// How a map is written.
 struct MapFileOptions {
   /// Float descriptors as they are, four times as large, instead of one byte per number.
   bool exact_descriptors = false;

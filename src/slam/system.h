@@ -46,11 +46,11 @@ struct MapSize {
   std::size_t points = 0;
 };
 
-/// The whole system (paper, Fig. 1): feature extraction in the caller's thread, tracking, and
-/// mapping with loop closing and relocalization, in threads of their own, joined by bounded queues.
-/// Features are extracted in the caller's thread, so a caller with processors to spare should read
-/// its images ahead in a thread of its own. In deterministic mode the same steps run one after
-/// another in the caller's thread, and equal input gives equal output to the bit.
+/// The whole system, as in figure 1 of the paper: feature extraction in the caller's thread,
+/// tracking, and mapping with loop closing and relocalization, in threads of their own, joined by
+/// bounded queues. Features are extracted in the caller's thread, so a caller with processors to
+/// spare should read its images ahead in a thread of its own. In deterministic mode the same steps
+/// run one after another in the caller's thread, and equal input gives equal output to the bit.
 ///
 /// process(), try_process() and finish() belong to one thread; on_frame is called by the tracking
 /// thread (in deterministic mode by the caller's).

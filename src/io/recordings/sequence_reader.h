@@ -11,6 +11,7 @@
 
 namespace dxslam {
 
+/// How a recording is read.
 struct SequenceOptions {
   std::string format = "auto";  ///< auto, or one of sequence_formats()
   /// Text file "stamp colour stamp depth" a line that replaces the search for the nearest stamp,
