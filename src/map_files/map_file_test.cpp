@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include <functional>
 
 #include "io/primitives/test_folder.h"
@@ -336,6 +338,21 @@ TEST(MapFile, ReadsTheFirstVersion) {
   ASSERT_EQ(stored.loops.size(), 1U);
   EXPECT_NEAR(stored.loops[0].a_from_b.translation().z(), 2.0, 1e-12);
   EXPECT_EQ(stored.thumbnails[0], "jpeg");
+}
+
+// The same of a file with a camera of every lens there was on 2026-11-25.
+TEST(MapFile, ReadsTheFirstVersionWithCameras) {
+  const StoredMap stored = load_map(DXSLAM_SOURCE_DIR "/tests/data/map_v1_cameras.dxmap");
+  constexpr std::array kLenses{"radtan", "radtan", "rational", "kannala_brandt", "double_sphere"};
+  ASSERT_EQ(stored.map.rig().cameras().size(), kLenses.size());
+  for (std::size_t id = 0; id < kLenses.size(); ++id) {
+    const Camera& camera = stored.map.rig()[static_cast<CameraId>(id)];
+    EXPECT_STREQ(camera.lens.model->name, kLenses[id]);
+    EXPECT_EQ(camera.lens.parameters[0], id == 0 ? 0.0 : 0.01);
+    EXPECT_EQ(camera.readout_time, id == 0 ? 0.0 : 0.02);
+    EXPECT_EQ(stored.map.keyframe(static_cast<KeyframeId>(id)).frame->camera, id);
+  }
+  expect_consistent(stored.map);
 }
 
 TEST(MapFile, ListsItsSections) {
