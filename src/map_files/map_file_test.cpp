@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <array>
-
 #include <functional>
 
 #include "io/primitives/test_folder.h"
