@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/features.h"
 #include "core/frame.h"
+#include "core/image_source.h"
 #include "core/options.h"
 #include "core/se3.h"
 #include "core/sequence.h"

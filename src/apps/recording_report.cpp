@@ -30,7 +30,7 @@ double extent_of(const std::vector<PosePair>& pairs) {
 
 }  // namespace
 
-void print_recording(const RgbdSequence& recording) {
+void print_recording(const ImageOrigin& recording) {
   const Camera& c = recording.camera();
   const RecordingFacts& facts = recording.facts();
   warn("camera of {}: {}x{}, fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f}{}",
@@ -45,18 +45,22 @@ void print_recording(const RgbdSequence& recording) {
        c.depth_factor, facts.median_depth, 100.0 * facts.depth_share);
 }
 
+SkippedFrame skipped_for(std::size_t index, const std::exception& error) {
+  std::string reason = error.what();
+  while (!reason.empty() && reason.back() == '\n') reason.pop_back();  // OpenCV's end so
+  return {index, reason};
+}
+
 std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function<void()>& work) {
   try {
     work();
     return std::nullopt;
   } catch (const std::exception& e) {
-    std::string reason = e.what();
-    while (!reason.empty() && reason.back() == '\n') reason.pop_back();  // OpenCV's end so
-    return SkippedFrame{index, reason};
+    return skipped_for(index, e);
   }
 }
 
-std::vector<SkippedFrame> all_skipped(const RgbdSequence& recording,
+std::vector<SkippedFrame> all_skipped(const ImageOrigin& recording,
                                       const std::vector<SkippedFrame>& failed) {
   std::vector<SkippedFrame> all = recording.skipped();
   all.insert(all.end(), failed.begin(), failed.end());
@@ -81,7 +85,7 @@ Json camera_json(const Camera& c) {
   return json;
 }
 
-Json recording_json(const RgbdSequence& recording) {
+Json recording_json(const ImageOrigin& recording) {
   const RecordingFacts& facts = recording.facts();
   return {{"calibration", facts.calibration_source},
           {"camera", camera_json(recording.camera())},
@@ -95,7 +99,7 @@ bool TruthReport::scale_is_wrong() const {
          rmse_with_scale < kExplained * position.rmse;
 }
 
-std::optional<TruthReport> compare_with_truth(const RgbdSequence& recording,
+std::optional<TruthReport> compare_with_truth(const ImageOrigin& recording,
                                               const Trajectory& estimate) {
   if (recording.ground_truth().empty() || estimate.empty()) return std::nullopt;
   try {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,19 +16,21 @@
 
 namespace dxslam::apps {
 
+/// Frame `index` is skipped for what was thrown while it was read or worked on.
+SkippedFrame skipped_for(std::size_t index, const std::exception& error);
 /// Calls `work`, which reads an image and works on it. What it throws concerns this image alone:
 /// returned is why it was skipped.
 std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function<void()>& work);
 /// Frames that could not be read, and `failed` ones, in order.
-std::vector<SkippedFrame> all_skipped(const RgbdSequence& recording,
+std::vector<SkippedFrame> all_skipped(const ImageOrigin& recording,
                                       const std::vector<SkippedFrame>& failed);
 /// Says on stderr how many there are and why the first was skipped; nothing where there is none.
 void print_skipped(const std::vector<SkippedFrame>& skipped);
 
 /// Two lines on stderr: the calibration used and its source, and what the depth images hold.
-void print_recording(const RgbdSequence& recording);
+void print_recording(const ImageOrigin& recording);
 /// The same as fields: calibration, camera, depth_factor, median_depth_m, depth_share.
-nlohmann::ordered_json recording_json(const RgbdSequence& recording);
+nlohmann::ordered_json recording_json(const ImageOrigin& recording);
 nlohmann::ordered_json camera_json(const Camera& camera);
 
 /// An estimate beside the true trajectory.
@@ -41,7 +44,7 @@ struct TruthReport {
 };
 /// Nothing where there is no truth; nor, with the reason on stderr, where there is too little of
 /// both to be aligned.
-std::optional<TruthReport> compare_with_truth(const RgbdSequence& recording,
+std::optional<TruthReport> compare_with_truth(const ImageOrigin& recording,
                                               const Trajectory& estimate);
 /// A line on stdout, and a sentence on stderr if the scale is wrong.
 void print_truth(const TruthReport& report, const Camera& camera);

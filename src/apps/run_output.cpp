@@ -70,7 +70,7 @@ Json stage_table(const System& system) {
   return stages;
 }
 
-Json skipped_frames(const RgbdSequence& sequence, const RunRecord& record) {
+Json skipped_frames(const ImageOrigin& sequence, const RunRecord& record) {
   Json skipped = Json::array();
   for (const SkippedFrame& s : all_skipped(sequence, record.failed_images)) {
     skipped.push_back({{"frame", s.index}, {"reason", s.reason}});
@@ -176,7 +176,7 @@ Json failed_outputs(const OutputSteps& steps, const RunRecord& record) {
 }
 
 Json summarise(OutputSteps& steps, const Session& session, const RunRecord& record,
-               const RgbdSequence& sequence) {
+               const ImageOrigin& sequence) {
   const double offered = static_cast<double>(std::max<std::size_t>(1, record.frames_offered));
   Json summary;
   summary["version"] = DXSLAM_VERSION;
@@ -206,7 +206,7 @@ Json summarise(OutputSteps& steps, const Session& session, const RunRecord& reco
 
 // Top view beside the truth. The map's own frame starts at the first camera, so the estimate is
 // aligned first; where that cannot be done it is drawn alone.
-std::string draw_result(const Trajectory& estimate, const RgbdSequence& sequence) {
+std::string draw_result(const Trajectory& estimate, const ImageOrigin& sequence) {
   const Trajectory& truth = sequence.ground_truth();
   if (truth.empty()) return draw_trajectory_svg(estimate, {}, sequence.name());
   try {
@@ -272,7 +272,7 @@ void write_map_results(OutputSteps& steps, const ResultFolder& folder, const Sys
 }  // namespace
 
 void write_results(OutputSteps& steps, Session& session, OnlineTrajectory& online,
-                   const RunRecord& record, const RgbdSequence& sequence) {
+                   const RunRecord& record, const ImageOrigin& sequence) {
   if (session.folder() == nullptr) return;
   ResultFolder& folder = *session.folder();
   const System* system = session.system();

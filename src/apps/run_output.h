@@ -39,6 +39,6 @@ struct RunRecord {
 /// keyframes.txt and map.ply where the map is not whole. The poses
 /// as they were known while running move to trajectory_online.txt. Last results give way to these.
 void write_results(OutputSteps& steps, Session& session, OnlineTrajectory& online,
-                   const RunRecord& record, const RgbdSequence& sequence);
+                   const RunRecord& record, const ImageOrigin& sequence);
 
 }  // namespace dxslam::apps

@@ -156,6 +156,20 @@ void Session::run(const std::function<void()>& feed) {
   }
 }
 
+std::optional<RgbdImage> Session::next(ImageSource& source, std::vector<SkippedFrame>& failed) {
+  while (!stop_requested()) {
+    try {
+      std::optional<RgbdImage> image = source.next();
+      return stop_requested() ? std::nullopt : std::move(image);
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::exception& e) {
+      failed.push_back(skipped_for(source.index(), e));
+    }
+  }
+  return std::nullopt;
+}
+
 bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,
                       const std::function<void()>& work) {
   const auto failure = attempt_image(index, work);

@@ -14,6 +14,7 @@
 #include "apps/process.h"
 #include "apps/run_settings.h"
 #include "apps/thumbnails.h"
+#include "core/image_source.h"
 #include "io/primitives/result_folder.h"
 #include "slam/first_error.h"
 #include "slam/system.h"
@@ -48,9 +49,12 @@ class Session {
   /// Calls `feed`, which gives the images, and waits until all are worked off. What goes wrong
   /// inside ends them, but costs no output: see rethrow_error(). Does nothing without a system.
   void run(const std::function<void()>& feed);
-  /// In `feed`, once per image: calls `work`, which reads and processes it. What that throws costs
-  /// this image alone, and is added to `failed`. Returns whether further images are wanted: not
-  /// after a stop, nor once tracking or mapping has failed.
+  /// In `feed`, the next image; nothing at the end and after a stop. What cannot be read costs this
+  /// image alone, and is added to `failed`; that no image can come any more is thrown.
+  static std::optional<RgbdImage> next(ImageSource& source, std::vector<SkippedFrame>& failed);
+  /// In `feed`, once per image: calls `work`, which processes it. What that throws costs this image
+  /// alone, and is added to `failed`. Returns whether further images are wanted: not after a stop,
+  /// nor once tracking or mapping has failed.
   bool attempt(std::size_t index, std::vector<SkippedFrame>& failed,
                const std::function<void()>& work);
   /// Hands an image to the system; false if it was dropped (`live` only).

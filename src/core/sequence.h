@@ -34,23 +34,30 @@ struct RecordingFacts {
   std::vector<std::string> notes;
 };
 
-/// A recording: images in time order, with calibration and, where known, the true trajectory.
-/// Implementations read lazily; one thread at a time may call a sequence.
-class RgbdSequence {
+/// What images of one camera have in common, in whichever way they are asked for.
+class ImageOrigin {
  public:
-  virtual ~RgbdSequence() = default;
+  virtual ~ImageOrigin() = default;
   virtual const std::string& name() const = 0;
   virtual const Camera& camera() const = 0;
   virtual const RecordingFacts& facts() const = 0;
+  /// Frames that could not be used so far.
+  virtual const std::vector<SkippedFrame>& skipped() const = 0;
+  /// world_from_camera of the colour camera; empty where unknown.
+  virtual const Trajectory& ground_truth() const = 0;
+};
+
+/// A recording: images in time order, with calibration and, where known, the true trajectory.
+/// Implementations read lazily; one thread at a time may call a sequence.
+class RgbdSequence : public ImageOrigin {
+ public:
   /// Number of frames listed; some may turn out to be unreadable.
   virtual std::size_t size() const = 0;
   virtual double stamp(std::size_t index) const = 0;
   /// Reads frame `index`. Nothing is returned for a broken frame; the reason is then the last
-  /// entry of skipped(). Throws ContractError if index >= size().
+  /// entry of skipped(). Nothing without such an entry: nobody wants to wait for it any more.
+  /// Throws ContractError if index >= size().
   virtual std::optional<RgbdImage> read(std::size_t index) = 0;
-  virtual const std::vector<SkippedFrame>& skipped() const = 0;
-  /// world_from_camera of the colour camera; empty where unknown.
-  virtual const Trajectory& ground_truth() const = 0;
 };
 
 }  // namespace dxslam

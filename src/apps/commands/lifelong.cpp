@@ -19,6 +19,7 @@
 #include "apps/stoppable_sequence.h"
 #include "apps/usage.h"
 #include "core/error.h"
+#include "core/image_source.h"
 #include "evaluation/openloris_result.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
@@ -39,10 +40,10 @@ struct LifelongArguments {
 
 /// One recording as it is fed.
 struct Visit {
-  Visit(const RgbdSequence& fed, ResultFolder* folder, std::size_t number)
+  Visit(const ImageOrigin& fed, ResultFolder* folder, std::size_t number)
       : recording(fed), first(number == 1), file(folder, fmt::format("online_{}.txt", number)) {}
 
-  const RgbdSequence& recording;
+  const ImageOrigin& recording;
   const bool first;
   std::size_t frames = 0;
   double first_stamp = 0.0;
@@ -77,7 +78,7 @@ class Underway {
   std::deque<Visit*> visits_;
 };
 
-using Recordings = std::vector<std::unique_ptr<RgbdSequence>>;
+using Recordings = std::vector<std::unique_ptr<ImageSource>>;
 
 // Both become part of a file of lines and, the scene, of its name.
 void check_name(const char* option, const std::string& name) {
@@ -97,8 +98,9 @@ Recordings open_all(const LifelongArguments& arguments) {
   }
   Recordings all;
   for (const std::string& folder : arguments.sequences) {
-    all.push_back(stoppable(open_recording(folder, arguments.settings.reader)));
-    require_depth(*all.back());
+    auto recording = stoppable(open_recording(folder, arguments.settings.reader));
+    require_depth(*recording);
+    all.push_back(make_image_source(std::move(recording), {arguments.settings.stride, 0}));
     const Camera& first = all.front()->camera();
     const Camera& camera = all.back()->camera();
     if (!camera.sees_as(first)) {
@@ -109,26 +111,25 @@ Recordings open_all(const LifelongArguments& arguments) {
   return all;
 }
 
-void feed(RgbdSequence& recording, std::size_t stride, bool dark, Session& session, Visit& visit,
-          Underway& underway) {
+void feed(ImageSource& source, bool dark, Session& session, Visit& visit, Underway& underway) {
   const LowLight low_light(LowLight::kDefaultGain);
   session.system()->begin_sequence();
-  const auto give = [&](std::size_t index) {
-    std::optional<RgbdImage> image = recording.read(index);
-    if (!image || stop_requested()) return;
-    if (dark) image->color = low_light.apply(image->color, image->index);
-    if (visit.frames++ == 0) visit.first_stamp = image->stamp;
+  const auto give = [&](RgbdImage& image) {
+    if (dark) image.color = low_light.apply(image.color, image.index);
+    if (visit.frames++ == 0) visit.first_stamp = image.stamp;
     underway.push(visit);
     try {
-      session.process(*image, false);
+      session.process(image, false);
     } catch (...) {
       if (!session.system()->has_failed()) underway.take_back();  // it will not be tracked
       throw;
     }
   };
-  bool goes_on = !stop_requested();
-  for (std::size_t i = 0; goes_on && i < recording.size(); i += stride) {
-    goes_on = session.attempt(i, visit.failed, [&] { give(i); });
+  bool goes_on = true;
+  while (goes_on) {
+    std::optional<RgbdImage> image = Session::next(source, visit.failed);
+    if (!image) return;
+    goes_on = session.attempt(source.index(), visit.failed, [&] { give(*image); });
   }
 }
 
@@ -139,7 +140,7 @@ void feed_all(const LifelongArguments& arguments, const Recordings& recordings, 
     visits.emplace_back(*recordings[v], session.folder(), v + 1);
     const bool dark = std::count(arguments.low_light.begin(), arguments.low_light.end(),
                                  static_cast<int>(v) + 1) > 0;
-    feed(*recordings[v], arguments.settings.stride, dark, session, visits.back(), underway);
+    feed(*recordings[v], dark, session, visits.back(), underway);
   }
 }
 
@@ -276,7 +277,7 @@ int run(const LifelongArguments& arguments) {
   session.claim_targets();
   std::size_t planned = 0;
   for (const auto& recording : recordings) {
-    planned += (recording->size() + arguments.settings.stride - 1) / arguments.settings.stride;
+    planned += recording->planned().value_or(0);
   }
   Progress progress("frames", planned);
   std::size_t done = 0;

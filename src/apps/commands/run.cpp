@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <utility>
 
 #include "apps/commands.h"
 #include "apps/console.h"
@@ -16,6 +17,7 @@
 #include "apps/stoppable_sequence.h"
 #include "apps/usage.h"
 #include "core/error.h"
+#include "core/image_source.h"
 #include "slam/stage_times.h"
 #include "synthetic/low_light.h"
 
@@ -72,31 +74,23 @@ void require_pace(const RgbdSequence& sequence) {
   }
 }
 
-void feed(const RunArguments& arguments, RgbdSequence& sequence, Session& session,
-          RunRecord& record) {
+void feed(const RunArguments& arguments, ImageSource& source, Session& session, RunRecord& record) {
   const std::optional<LowLight> low_light =
       arguments.low_light ? std::optional<LowLight>(LowLight(*arguments.low_light)) : std::nullopt;
+  const bool live = arguments.realtime || source.is_live();
   RealTimePace pace;
-  const auto give = [&](std::size_t index) {
-    std::optional<RgbdImage> image = sequence.read(index);
-    if (!image || stop_requested()) return;
-    if (low_light) image->color = low_light->apply(image->color, image->index);
-    if (arguments.realtime) pace.wait_for(image->stamp);
+  const auto give = [&](RgbdImage& image) {
+    if (low_light) image.color = low_light->apply(image.color, image.index);
+    if (arguments.realtime) pace.wait_for(image.stamp);
     if (stop_requested()) return;
-    if (!session.process(*image, arguments.realtime)) ++record.frames_dropped;
+    if (!session.process(image, live)) ++record.frames_dropped;
   };
-  bool goes_on = !stop_requested();
-  for (std::size_t i = 0; goes_on && i < sequence.size(); i += arguments.settings.stride) {
-    if (arguments.max_frames > 0 && record.frames_offered >= arguments.max_frames) break;
-    ++record.frames_offered;
-    goes_on = session.attempt(i, record.failed_images, [&] { give(i); });
+  bool goes_on = true;
+  while (goes_on) {
+    std::optional<RgbdImage> image = Session::next(source, record.failed_images);
+    if (!image) return;
+    goes_on = session.attempt(source.index(), record.failed_images, [&] { give(*image); });
   }
-}
-
-std::size_t planned_frames(const RunArguments& arguments, const RgbdSequence& sequence) {
-  const std::size_t stride = arguments.settings.stride;
-  const std::size_t n = (sequence.size() + stride - 1) / stride;
-  return arguments.max_frames > 0 ? std::min(n, arguments.max_frames) : n;
 }
 
 // As they were known when the frames were tracked, whichever map they are in.
@@ -109,7 +103,7 @@ Trajectory poses_as_tracked(const System& system) {
   return poses;
 }
 
-void conclude(const RgbdSequence& sequence, const Session& session, RunRecord& record) {
+void conclude(const ImageOrigin& sequence, const Session& session, RunRecord& record) {
   if (session.system() == nullptr) return;
   const System& system = *session.system();
   record.trajectory = session.has_whole_map() ? system.trajectory() : poses_as_tracked(system);
@@ -117,7 +111,7 @@ void conclude(const RgbdSequence& sequence, const Session& session, RunRecord& r
   record.truth = compare_with_truth(sequence, record.trajectory);
 }
 
-void print_outcome(const RunRecord& record, const RgbdSequence& sequence, const System* system) {
+void print_outcome(const RunRecord& record, const ImageOrigin& sequence, const System* system) {
   if (system != nullptr) {
     const auto stages = system->times().summaries();
     const auto frame = stages.find("frame");
@@ -138,7 +132,7 @@ void print_outcome(const RunRecord& record, const RgbdSequence& sequence, const 
 }
 
 // Whatever went wrong before: what can be saved is saved.
-int end(const RgbdSequence& sequence, Session& session, OnlineTrajectory& online,
+int end(const ImageOrigin& sequence, Session& session, OnlineTrajectory& online,
         RunRecord& record) {
   record.interrupted = stop_requested();
   record.why_no_pose = session.why_no_pose();
@@ -155,34 +149,39 @@ int end(const RgbdSequence& sequence, Session& session, OnlineTrajectory& online
   return steps.report(record.interrupted ? kInterrupted : code);
 }
 
+std::unique_ptr<ImageSource> open_source(const RunArguments& arguments) {
+  auto recording = stoppable(open_recording(arguments.sequence, arguments.settings.reader));
+  require_depth(*recording);
+  if (arguments.realtime) require_pace(*recording);
+  return make_image_source(std::move(recording), {arguments.settings.stride, arguments.max_frames});
+}
+
 int run(const RunArguments& arguments) {
   const Stopwatch startup;
   Session session(arguments.settings);
-  const std::unique_ptr<RgbdSequence> sequence =
-      stoppable(open_recording(arguments.sequence, arguments.settings.reader));
-  require_depth(*sequence);
-  if (arguments.realtime) require_pace(*sequence);
+  const std::unique_ptr<ImageSource> source = open_source(arguments);
   session.claim_targets();
   OnlineTrajectory online(session.folder(), "trajectory.txt");
-  Progress progress("frames", planned_frames(arguments, *sequence));
+  Progress progress("frames", source->planned().value_or(0));
   std::size_t done = 0;
   RunRecord record;
   record.low_light = arguments.low_light;
   record.realtime = arguments.realtime;
-  const auto system = session.start(sequence->camera(), [&](const TrackedFrame& frame) {
+  const auto system = session.start(source->camera(), [&](const TrackedFrame& frame) {
     if (frame.state == TrackingState::kTracking) {
       if (!record.first_pose_ms) record.first_pose_ms = startup.ms();
       online.append({frame.stamp, frame.world_from_camera});
     }
     progress.update(++done, state_name(frame.state));
   });
-  print_recording(*sequence);
+  print_recording(*source);
   record.startup_ms = startup.ms();
   const Stopwatch wall;
-  session.run([&] { feed(arguments, *sequence, session, record); });
+  session.run([&] { feed(arguments, *source, session, record); });
   record.wall_s = wall.ms() / 1000.0;
+  record.frames_offered = source->passed();
   progress.finish();
-  return end(*sequence, session, online, record);
+  return end(*source, session, online, record);
 }
 
 }  // namespace
