@@ -14,6 +14,8 @@ std::unique_ptr<RgbdSequence> open_recording(const std::string& path,
   return recording;
 }
 
+std::string recording_help() { return "Recording: " + known_recordings(); }
+
 void add_reader_options(CLI::App& command, SequenceOptions& options) {
   command.add_option("--format", options.format, sequence_format_list())
       ->check(recording_format())

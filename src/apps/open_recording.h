@@ -15,6 +15,9 @@ namespace dxslam::apps {
 std::unique_ptr<RgbdSequence> open_recording(const std::string& path,
                                              const SequenceOptions& options = {});
 
+/// Help for an argument that is a recording: which ones are known.
+std::string recording_help();
+
 /// Adds the options that say what the recording is: --format, --calibration, --color-topic and
 /// --depth-topic.
 void add_reader_options(CLI::App& command, SequenceOptions& options);

@@ -155,7 +155,7 @@ void add_info_command(CLI::App& app) {
   const auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand(
       "info", "tell what a recording holds: streams, rates, gaps, calibration, what is missing");
-  command->add_option("SOURCE", arguments->source, "recording: a folder or a bag")->required();
+  command->add_option("SOURCE", arguments->source, recording_help())->required();
   add_reader_options(*command, arguments->reader);
   command->add_option("--json", arguments->json, "also write it to a JSON file");
   command->callback([arguments] { tell(*arguments); });

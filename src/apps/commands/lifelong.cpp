@@ -302,7 +302,8 @@ void add_lifelong_command(CLI::App& app) {
   RunSettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand(
       "lifelong", "Feed recordings of one place one after another, as if day by day");
-  command->add_option("SEQUENCE", arguments->sequences, "Folders, in order")->required();
+  command->add_option("SEQUENCE", arguments->sequences, recording_help() + "; several, in order")
+      ->required();
   command->add_option("--out", settings.out, "Folder for the results")->required();
   add_run_options(*command, settings);
   command->add_option("--scene", arguments->scene, "Name of the scene in the result")

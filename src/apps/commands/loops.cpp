@@ -124,10 +124,7 @@ void refuse_unused(const CLI::App& command, const LoopSettings& settings) {
 }
 
 void add_input_options(CLI::App& command, LoopSettings& settings) {
-  command
-      .add_option("SEQUENCE", settings.sequence,
-                  "Recording: a folder or a bag; or a folder of images")
-      ->required();
+  command.add_option("SEQUENCE", settings.sequence, recording_help())->required();
   command
       .add_option("--ground-truth", settings.truth,
                   "`poses`, or a square matrix as .mat (v5), text or black-and-white image")

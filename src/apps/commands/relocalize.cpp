@@ -168,7 +168,7 @@ void add_relocalize_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("relocalize", "find every frame of a recording in a map, each by itself");
   command->add_option("MAP", arguments->map, "map file")->required();
-  command->add_option("SEQUENCE", arguments->sequence, "recording: a folder or a bag")->required();
+  command->add_option("SEQUENCE", arguments->sequence, recording_help())->required();
   command->add_option("--out", arguments->out,
                       "folder for poses.txt (accepted ones, in the map's frame) and "
                       "relocalization.csv");

@@ -190,7 +190,7 @@ void add_run_command(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   RunSettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand("run", "Track a recording and build its map");
-  command->add_option("SEQUENCE", arguments->sequence, "Recording: a folder or a bag")->required();
+  command->add_option("SEQUENCE", arguments->sequence, recording_help())->required();
   command->add_option("--out", settings.out, "Folder for trajectory, map and summary");
   add_run_options(*command, settings);
   command->add_option("--association", settings.reader.association,

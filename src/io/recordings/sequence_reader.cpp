@@ -19,8 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Has { kNothing, kLists, kCameras, kTopics };  // which options have a meaning
+// Which options have a meaning.
+enum class Has { kNothing, kLists, kCameras, kTopics };
 
+/// All that programs say of a format, and do with it, comes from its row.
 struct Format {
   const char* name;
   const char* holds;  // what it is known by, for messages
@@ -52,6 +54,15 @@ const std::vector<Format>& formats() {
       {"images", "image files", nullptr, list_image_folder, Has::kCameras},
   };
   return table;
+}
+
+// "lists of images (tum, openloris)": `what`, and the formats that have it.
+std::string described(const char* what, Has has) {
+  std::vector<std::string> names;
+  for (const Format& format : formats()) {
+    if (format.has == has) names.emplace_back(format.name);
+  }
+  return fmt::format("{} ({})", what, fmt::join(names, ", "));
 }
 
 const Format& format_named(const std::string& name) {
@@ -107,14 +118,8 @@ std::vector<Place> recordings_below(const std::string& folder, const Format* wan
         folder, below.size(), folder_name(below[0].folder), folder_name(below[1].folder),
         below.size() > 2 ? ", ..." : ""));
   }
-  std::vector<std::string> known;
-  for (const Format& format : formats()) {
-    known.push_back(fmt::format("{} ({})", format.holds, format.name));
-  }
-  const std::string last = known.back();
-  known.pop_back();
-  throw InputError(fmt::format("{}: not a recording known here, expected {} or {}", folder,
-                               fmt::join(known, ", "), last));
+  throw InputError(
+      fmt::format("{}: not a recording known here, expected {}", folder, known_recordings()));
 }
 
 // The format of a recording that is one file.
@@ -146,19 +151,15 @@ Place find_recording(const std::string& path, const std::string& format) {
 }
 
 void refuse_unused_options(const Format& format, const SequenceOptions& options) {
-  const auto refuse = [&](const char* option, const char* meant) {
+  const auto check = [&](const char* option, bool given, Has needed, const char* what) {
+    if (!given || format.has == needed) return;
     throw InputError(fmt::format("option {} is for {}, expected none for a recording of format {}",
-                                 option, meant, format.name));
+                                 option, described(what, needed), format.name));
   };
-  if (!options.association.empty() && format.has != Has::kLists) {
-    refuse("--association", "lists of images (tum, openloris)");
-  }
-  if (options.eye != "all" && format.has != Has::kCameras) {
-    refuse("--eye", "recordings of two cameras (kitti, images)");
-  }
-  if (format.has == Has::kTopics) return;
-  if (!options.color_topic.empty()) refuse("--color-topic", "files of topics (bag)");
-  if (!options.depth_topic.empty()) refuse("--depth-topic", "files of topics (bag)");
+  check("--association", !options.association.empty(), Has::kLists, "lists of images");
+  check("--eye", options.eye != "all", Has::kCameras, "recordings of two cameras");
+  check("--color-topic", !options.color_topic.empty(), Has::kTopics, "files of topics");
+  check("--depth-topic", !options.depth_topic.empty(), Has::kTopics, "files of topics");
 }
 
 SequenceListing list_sequence(const std::string& path, const SequenceOptions& options) {
@@ -194,6 +195,16 @@ const std::vector<std::string>& sequence_formats() {
 
 std::string sequence_format_list() {
   return fmt::format("auto, {}", fmt::join(sequence_formats(), ", "));
+}
+
+std::string known_recordings() {
+  std::vector<std::string> known;
+  for (const Format& format : formats()) {
+    known.push_back(fmt::format("{} ({})", format.holds, format.name));
+  }
+  const std::string last = known.back();
+  known.pop_back();
+  return fmt::format("{} or {}", fmt::join(known, ", "), last);
 }
 
 std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,

@@ -35,6 +35,8 @@ struct SequenceOptions {
 const std::vector<std::string>& sequence_formats();
 /// "auto" and these, for help and messages.
 std::string sequence_format_list();
+/// What each is known by, for help and messages: "rgb.txt and depth.txt (tum), ...".
+std::string known_recordings();
 
 /// Opens a recording. Lists, calibration and trajectories are read and checked at once, a few
 /// images are decoded to check size and depth scale, all others are read on demand.
@@ -54,10 +56,8 @@ std::string sequence_format_list();
 ///   0); no depth.
 /// - images: image files, in the folder or in its subfolder Images (City Centre and New College of
 ///   FAB-MAP: left and right in turn), in the order of their names, stamp index / fps; no depth.
-///
 /// - bag: a ROS 1 bag, an MCAP file or a ROS 2 bag in SQLite, or a folder of its parts; pictures,
-/// raw
-///   or compressed, and calibration from topics; depth of another camera is registered by the
+///   raw or compressed, and calibration from topics; depth of another camera is registered by the
 ///   transforms in it.
 ///
 /// Throws InputError, one sentence with file, line and what was expected, for everything that makes
