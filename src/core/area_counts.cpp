@@ -39,4 +39,16 @@ double AreaCounts::share_in(const AreaCounts& found) const {
   return telling > 0 ? static_cast<double>(covered) / telling : 0.0;
 }
 
+double agreeing_share(const PixelBox& view, const std::vector<Eigen::Vector2f>& keypoints,
+                      const std::vector<Eigen::Vector2f>& in_view,
+                      const std::vector<Eigen::Vector2f>& agreeing) {
+  const auto counts_of = [&](const std::vector<Eigen::Vector2f>& pixels) {
+    AreaCounts counts(view);
+    for (const Eigen::Vector2f& pixel : pixels) counts.add(pixel);
+    return counts;
+  };
+  // An area with few keypoints or few points in view says nothing.
+  return counts_of(in_view).limited_by(counts_of(keypoints)).share_in(counts_of(agreeing));
+}
+
 }  // namespace dxslam

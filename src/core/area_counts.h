@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "core/camera.h"
 
@@ -34,5 +35,12 @@ class AreaCounts {
   PixelBox view_;
   std::array<int, kAreas> counts_{};
 };
+
+/// How much of an image agrees with a pose: of the areas in which the image has keypoints and the
+/// map has points that should be in view, the share in which a keypoint agrees. Things that are
+/// there twice agree in one part of the image, however many they are; a right pose agrees all over.
+double agreeing_share(const PixelBox& view, const std::vector<Eigen::Vector2f>& keypoints,
+                      const std::vector<Eigen::Vector2f>& in_view,
+                      const std::vector<Eigen::Vector2f>& agreeing);
 
 }  // namespace dxslam

@@ -38,5 +38,19 @@ TEST(AreaCounts, AreLimitedAreaByArea) {
   EXPECT_EQ(limited.share_in(counts_of({{101, 1}})), 1.0);
 }
 
+TEST(AreaCounts, APoseThatAgreesInOnePartOfTheImageCoversLittle) {
+  const PixelBox view{0.0, 0.0, 639.0, 479.0};
+  std::vector<Eigen::Vector2f> all;
+  for (int y = 5; y < 480; y += 20) {
+    for (int x = 5; x < 640; x += 20) all.emplace_back(x, y);
+  }
+  const std::vector<Eigen::Vector2f> top(all.begin(), all.begin() + 32 * 4);
+  EXPECT_EQ(agreeing_share(view, all, all, all), 1.0);
+  EXPECT_NEAR(agreeing_share(view, all, all, top), 1.0 / 6.0, 1e-12);
+  EXPECT_EQ(agreeing_share(view, all, top, top), 1.0) << "the map knows no more";
+  EXPECT_EQ(agreeing_share(view, top, all, top), 1.0) << "the image shows no more";
+  EXPECT_EQ(agreeing_share(view, {}, all, {}), 0.0);
+}
+
 }  // namespace
 }  // namespace dxslam

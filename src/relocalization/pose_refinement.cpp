@@ -92,16 +92,12 @@ std::vector<PointId> PoseRefiner::local_points(KeyframeId reference) const {
 
 double PoseRefiner::coverage(const std::vector<Eigen::Vector2f>& in_view,
                              const std::vector<PointMatch>& inliers) const {
-  // An area with few keypoints or few points in view says nothing.
-  AreaCounts keypoints(camera_.view());
-  AreaCounts due = keypoints;
-  AreaCounts agreeing = keypoints;
-  for (const Eigen::Vector2f& pixel : frame_.pixels) keypoints.add(pixel);
-  for (const Eigen::Vector2f& pixel : in_view) due.add(pixel);
+  std::vector<Eigen::Vector2f> agreeing;
+  agreeing.reserve(inliers.size());
   for (const PointMatch& m : inliers) {
-    agreeing.add(frame_.pixels[static_cast<std::size_t>(m.keypoint)]);
+    agreeing.push_back(frame_.pixels[static_cast<std::size_t>(m.keypoint)]);
   }
-  return due.limited_by(keypoints).share_in(agreeing);
+  return agreeing_share(camera_.view(), frame_.pixels, in_view, agreeing);
 }
 
 std::vector<Eigen::Vector2f> PoseRefiner::search(const std::vector<PointId>& points, double radius,

@@ -40,7 +40,7 @@ struct ConsensusOptions {
   int frames = 3;
   int min_matched = 10;
   int min_inliers = 15;
-  double min_coverage = 0.5;
+  double min_coverage = 0.55;
   double max_gap = 1.0;
   double max_speed = 1.5;
   double max_turn = 120.0;

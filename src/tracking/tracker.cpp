@@ -6,11 +6,13 @@
 #include <limits>
 #include <utility>
 
+#include "core/area_counts.h"
 #include "core/error.h"
 #include "core/options.h"
 #include "core/rolling_shutter.h"
 #include "map/view_range.h"
 #include "tracking/keyframe_decision.h"
+#include "tracking/recovery.h"
 
 namespace dxslam {
 namespace {
@@ -382,10 +384,32 @@ Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const Key
   OptionalEstimate refined = optimise(frame, estimate.world_from_camera, std::move(known));
   if (!refined) return std::nullopt;
   refined->recovered = estimate.recovered;
+  if (refined->recovered && !is_believable(frame, *refined, estimate.known, predictions)) {
+    return std::nullopt;
+  }
   for (const KnownPoint& k : refined->known) {
     if (k.id != kNoId) ++since_keyframe_.counts[k.id].found;
   }
   return refined;
+}
+
+bool Tracker::is_believable(const Frame& frame, const Estimate& recovered,
+                            const std::vector<KnownPoint>& found,
+                            const std::vector<PixelPrediction>& looked_for) const {
+  if (!last_.frame) return true;  // relocalization has judged it
+  const auto pixel_of = [&](const KnownPoint& known) {
+    return frame.pixels[static_cast<std::size_t>(known.keypoint)];
+  };
+  std::vector<Eigen::Vector2f> in_view;
+  std::vector<Eigen::Vector2f> agreeing;
+  for (const KnownPoint& known : found) in_view.push_back(pixel_of(known));
+  for (const PixelPrediction& prediction : looked_for) in_view.push_back(prediction.pixel);
+  for (const KnownPoint& known : recovered.known) agreeing.push_back(pixel_of(known));
+  const double share = agreeing_share(camera_.view(), frame.pixels, in_view, agreeing);
+  return is_believable_recovery(
+      options_.recovery, share, static_cast<int>(agreeing.size()),
+      {last_.world_from_camera.inverse() * recovered.world_from_camera,
+       frame.stamp - last_.frame->stamp, state_ == TrackingState::kTracking});
 }
 
 bool Tracker::needs_keyframe(const Frame& frame, const Estimate& estimate) const {

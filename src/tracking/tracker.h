@@ -90,6 +90,11 @@ class Tracker {
                                                     const std::vector<char>& known) const;
   OptionalEstimate optimise(const Frame& frame, const SE3& start,
                             std::vector<KnownPoint> known) const;
+  /// Whether a pose found by descriptors alone is that of this place: `found` by them, and
+  /// `looked_for` around it.
+  bool is_believable(const Frame& frame, const Estimate& recovered,
+                     const std::vector<KnownPoint>& found,
+                     const std::vector<PixelPrediction>& looked_for) const;
   bool needs_keyframe(const Frame& frame, const Estimate& estimate) const;
   TrackedFrame conclude(const FramePtr& frame, const OptionalEstimate& estimate,
                         std::optional<KeyframeRequest>& request);

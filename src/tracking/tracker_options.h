@@ -5,6 +5,7 @@
 #include "core/options.h"
 #include "geometry/pnp.h"
 #include "optimization/pose_optimizer.h"
+#include "tracking/recovery.h"
 
 namespace dxslam {
 
@@ -46,6 +47,7 @@ struct TrackerOptions {
   double max_distance_ratio = 3.0;
   double depth_tolerance = 0.2;
   int temporary_points_below = 60;
+  RecoveryOptions recovery;
   KeyframeOptions keyframe;
   PoseOptimizerOptions pose;
   PnpOptions pnp;
@@ -84,6 +86,7 @@ struct TrackerOptions {
           "relative difference of predicted and measured depth");
     visit("temporary_points_below", self.temporary_points_below, {0, 100000}, "points",
           "with fewer map points the last frame's depth helps out");
+    visit.group("recovery", self.recovery);
     visit.group("keyframe", self.keyframe);
     visit.group("pose", self.pose);
     visit.group("pnp", self.pnp);
