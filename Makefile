@@ -1,7 +1,7 @@
 # The common tasks by name; `make help` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build install deb demo docs test train benchmark format check-format tidy asan tsan clean
+.PHONY: help setup build install deb demo docs test ros train benchmark format check-format tidy asan tsan clean
 
 JOBS ?= $(shell nproc)
 PRESET ?= release
@@ -46,6 +46,12 @@ test: setup $(BUILD)/build.ninja  ## set up, build everything and run all tests
 
 asan tsan:  ## all tests under AddressSanitizer and UBSan, or under ThreadSanitizer
 	$(MAKE) test PRESET=$@
+
+ros: SETUP_OPTIONS = --with-ros
+ros: setup  ## set up, build and test the parts for ROS alone, in build/ros
+	cmake -S ros -B build/ros -G Ninja
+	cmake --build build/ros -j $(JOBS)
+	ctest --test-dir build/ros --output-on-failure -j $(JOBS)
 
 train:  ## train the feature network (hours; see training/)
 	training/run.sh

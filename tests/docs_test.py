@@ -18,7 +18,7 @@ TIMEOUT = 120  # seconds
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 HISTORY = {"experiments.md"}  # names files and options of their time
 TOP = ("docs", "src", "tests", "benchmarks", "scripts", "examples", "models", "manifests", "package",
-       "python", "training")
+       "python", "ros", "training")
 
 
 def slug(heading):

@@ -73,6 +73,10 @@ def source_files():
     return sorted(path for path in SOURCE.rglob("*") if path.suffix in (".h", ".cpp"))
 
 
+def ros_files():
+    return sorted(path for path in (ROOT / "ros").rglob("*") if path.suffix in (".h", ".cpp"))
+
+
 def includes(path):
     """(line number, header) of every include."""
     for number, line in enumerate(path.read_text().splitlines(), 1):
@@ -195,20 +199,31 @@ class Layers(unittest.TestCase):
         self.assertFalse(problems, "expected \"layer/header.h\":\n" + "\n".join(problems))
 
 
+class Ros(unittest.TestCase):
+    def test_the_transport_knows_nothing_of_slam(self):
+        layers = set(layer_order())
+        problems = [f"{path.relative_to(ROOT)}:{number}: {header}" for path in ros_files()
+                    if path.is_relative_to(ROOT / "ros" / "ros2")
+                    for number, header in includes(path)
+                    if "/" in header and header.split("/")[0] in layers]
+        self.assertFalse(problems, "\n" + "\n".join(problems))
+
+
 class Sources(unittest.TestCase):
     def test_licence_header(self):
-        files = source_files() + sorted((ROOT / "tests").glob("*.py"))
+        files = [*source_files(), *ros_files(), *(ROOT / "tests").glob("*.py"),
+                 *(ROOT / "ros").rglob("*.py")]
         missing = [str(path.relative_to(ROOT)) for path in files
                    if "SPDX-License-Identifier: Apache-2.0" not in path.read_text()[:200]]
         self.assertFalse(missing, f"no SPDX line in {missing}")
 
     def test_files_are_short(self):
-        long = [f"{path.relative_to(ROOT)}: {lines} lines" for path in source_files()
+        long = [f"{path.relative_to(ROOT)}: {lines} lines" for path in [*source_files(), *ros_files()]
                 if (lines := len(path.read_text().splitlines())) > MAX_FILE_LINES]
         self.assertFalse(long, f"longer than {MAX_FILE_LINES} lines: {long}")
 
     def test_functions_are_short(self):
-        long = [f"{path.relative_to(ROOT)}:{start}: {lines} lines" for path in source_files()
+        long = [f"{path.relative_to(ROOT)}:{start}: {lines} lines" for path in [*source_files(), *ros_files()]
                 for start, lines in function_lengths(path.read_text())
                 if lines > MAX_FUNCTION_LINES]
         self.assertFalse(long, f"longer than {MAX_FUNCTION_LINES} lines: {long}")
@@ -217,7 +232,7 @@ class Sources(unittest.TestCase):
         """Two types of one name, or two inline functions, silently become one in a program that
         links both."""
         found = {}
-        for path in source_files():
+        for path in [*source_files(), *ros_files()]:
             for line, what in definitions(path.read_text()):
                 found.setdefault(what, []).append(f"{path.relative_to(ROOT)}:{line}")
         doubles = [f"{what}: {', '.join(places)}" for what, places in found.items()
@@ -225,7 +240,7 @@ class Sources(unittest.TestCase):
         self.assertFalse(doubles, "\n" + "\n".join(doubles))
 
     def test_headers_are_guarded(self):
-        missing = [str(path.relative_to(ROOT)) for path in source_files()
+        missing = [str(path.relative_to(ROOT)) for path in [*source_files(), *ros_files()]
                    if path.suffix == ".h" and "#pragma once" not in path.read_text()]
         self.assertFalse(missing, f"no #pragma once in {missing}")
 
