@@ -22,6 +22,7 @@
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/json_text.h"
+#include "slam/system_setup.h"
 
 namespace dxslam::apps {
 namespace {

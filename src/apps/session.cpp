@@ -19,6 +19,7 @@
 #include "features/extractor_factory.h"
 #include "io/formats/ply_file.h"
 #include "io/formats/trajectory_file.h"
+#include "slam/system_setup.h"
 
 namespace dxslam::apps {
 namespace {

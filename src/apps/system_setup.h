@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "features/extractor.h"
 #include "slam/system_options.h"
 
 namespace dxslam::apps {
@@ -22,11 +21,7 @@ struct SystemArguments {
 /// what cannot be used.
 SystemOptions load_system_options(const SystemArguments& arguments);
 
-/// What the user should know about the features: of their choice, of the extractor itself, and what
-/// cannot be done with them. `in_stored_map`: a map is gone on with.
-std::vector<std::string> feature_notes(const SystemOptions& options,
-                                       const FeatureExtractor& extractor, bool in_stored_map);
-/// Says them on stderr.
+/// Says notes (feature_notes) on stderr.
 void tell_notes(const std::vector<std::string>& notes);
 
 }  // namespace dxslam::apps

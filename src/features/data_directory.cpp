@@ -43,10 +43,18 @@ std::string installed_data() {
   return "";
 }
 
+std::string& given_directory() {
+  static std::string folder;
+  return folder;
+}
+
 }  // namespace
+
+void set_data_directory(const std::string& folder) { given_directory() = folder; }
 
 std::string data_directory() {
   if (const std::string chosen = environment("DXSLAM_DATA"); !chosen.empty()) return chosen;
+  if (!given_directory().empty()) return given_directory();
   if (const std::string installed = installed_data(); !installed.empty()) return installed;
   return DXSLAM_DATA_DIR;
 }

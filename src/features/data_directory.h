@@ -6,10 +6,13 @@
 
 namespace dxslam {
 
-/// Folder that holds `manifests/` and `models/`: $DXSLAM_DATA where that is set, else the folder
-/// `share/dxslam` of the installation that the library (or, linked statically, the program) lies
-/// in, wherever that was moved to; else the source folder the library was built from.
+/// Folder that holds `manifests/` and `models/`: $DXSLAM_DATA where that is set, else what
+/// set_data_directory() was given, else the folder `share/dxslam` of the installation that the
+/// library (or, linked statically, the program) lies in, wherever that was moved to; else the
+/// source folder the library was built from.
 std::string data_directory();
+/// For programs that carry the folder along in a place of their own. Before other threads begin.
+void set_data_directory(const std::string& folder);
 /// Whether the user chose it by $DXSLAM_DATA.
 bool is_data_directory_chosen();
 

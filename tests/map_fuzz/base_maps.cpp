@@ -6,9 +6,9 @@
 #include <cstring>
 #include <utility>
 
-#include "apps/map_weld.h"
 #include "core/error.h"
 #include "map_files/map_merge.h"
+#include "slam/map_weld.h"
 #include "slam/stored_system.h"
 
 namespace dxslam::fuzz {
@@ -78,7 +78,7 @@ BaseMaps::BaseMaps(const std::string& folder) : folder_(folder) {
     add_loop(both);
     both.thumbnails.assign(both.map.keyframe_ids().back() + std::size_t{1}, "a picture");
     add(*recording, both);
-    apps::weld_components(both);
+    weld_components(both);
     add(*recording, both);
   }
 }

@@ -8,12 +8,12 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "apps/map_weld.h"
 #include "core/error.h"
 #include "map_files/map_export.h"
 #include "map_files/map_merge.h"
 #include "map_files/map_statistics.h"
 #include "mutation.h"
+#include "slam/map_weld.h"
 #include "slam/stored_system.h"
 
 namespace dxslam::fuzz {
@@ -153,7 +153,7 @@ class Trial {
       ++report_.merged;
       StoredMap merged{both.header, Map(both.parts), both.loops, both.thumbnails};
       if (thorough_ || good_first == weld_good_first_) {
-        must_work("merge", [&] { apps::weld_components(merged); });
+        must_work("merge", [&] { weld_components(merged); });
       }
       save_and_load(take_snapshot(merged.header, merged.map, merged.loops, merged.thumbnails));
     }

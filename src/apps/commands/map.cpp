@@ -10,7 +10,6 @@
 #include "apps/command_files.h"
 #include "apps/commands.h"
 #include "apps/console.h"
-#include "apps/map_weld.h"
 #include "apps/output_steps.h"
 #include "apps/recording_report.h"
 #include "apps/usage.h"
@@ -22,6 +21,7 @@
 #include "map_files/map_file.h"
 #include "map_files/map_merge.h"
 #include "map_files/map_statistics.h"
+#include "slam/map_weld.h"
 
 namespace dxslam::apps {
 namespace {

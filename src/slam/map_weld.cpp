@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
-#include "apps/map_weld.h"
+#include "slam/map_weld.h"
 
 #include <algorithm>
 #include <unordered_map>
@@ -11,7 +11,7 @@
 #include "slam/stored_system.h"
 #include "slam/system_options.h"
 
-namespace dxslam::apps {
+namespace dxslam {
 
 std::size_t weld_components(StoredMap& stored) {
   Map& map = stored.map;
@@ -40,4 +40,4 @@ std::size_t weld_components(StoredMap& stored) {
   return closer.closed_loops().size() - known.size();
 }
 
-}  // namespace dxslam::apps
+}  // namespace dxslam
