@@ -74,6 +74,13 @@ void Camera::prepare(const std::string& where) {
   check("disparity_noise", disparity_noise, 1e-3, 100.0);
   check("max_depth", max_depth, 0.01, 1e4);
   check("readout_time", readout_time, 0.0, 1.0);
+  constexpr double kRounding = 1.05;  // of both numbers
+  if (readout_time * fps > kRounding) {
+    throw InputError(fmt::format(
+        "{}: camera readout_time is {} s, expected at most the {:.4g} s from image to image "
+        "that fps {} says",
+        where, readout_time, 1.0 / fps, fps));
+  }
   if (has_distortion()) measure_view(where);
 }
 

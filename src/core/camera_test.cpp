@@ -173,6 +173,12 @@ TEST(Camera, NamesPlaceFieldAndBoundsOfABadValue) {
   c = freiburg1();
   c.depth_factor = 0.0;
   EXPECT_THAT(refusal(c), HasSubstr("depth_factor"));
+  c = freiburg1();
+  c.fps = 15.0;
+  c.readout_time = 0.0667;  // all of 1/15 s
+  EXPECT_EQ(refusal(c), "");
+  c.readout_time = 0.1;
+  EXPECT_THAT(refusal(c), HasSubstr("readout_time is 0.1 s, expected at most the 0.06667 s"));
 }
 
 }  // namespace
