@@ -198,20 +198,26 @@ class BrokenInput(Recorded):
 
         def change(lines):
             row = self.first_row(lines) + 4
-            lines[row] = "nan " + lines[row].split()[1]
+            for wrong in lines[row:row + self.wrong]:
+                lines[lines.index(wrong)] = "nan " + wrong.split()[1]
             self.line = row + 1
+        self.wrong = 1
         self.edit(copy / "rgb.txt", change)
-        self.refuse_run(copy, f"rgb.txt:{self.line}", "nan")
+        done = self.succeed(self.run_orb(self.folder / "out", recording=copy))
+        self.assertIn(f"rgb.txt:{self.line}: stamp is 'nan'", done.stderr)
+        self.wrong = 10
+        self.edit(copy / "rgb.txt", change)
+        self.refuse_run(copy, f"rgb.txt:{self.line}", "nan", "10 cannot be used")
 
     def test_stamps_that_go_backwards(self):
         copy = self.copy()
 
         def change(lines):
-            row = self.first_row(lines) + 10
-            lines[row], lines[row - 5] = lines[row - 5], lines[row]
-            self.line = row - 5 + 2
+            row = self.first_row(lines)
+            lines[row:] = lines[row + 20:] + lines[row:row + 20]
+            self.line = len(lines) - 20 + 1
         self.edit(copy / "rgb.txt", change)
-        self.refuse_run(copy, f"rgb.txt:{self.line}")
+        self.refuse_run(copy, f"rgb.txt:{self.line}", "expected rising stamps")
 
     def test_unknown_features(self):
         out = self.folder / "out"

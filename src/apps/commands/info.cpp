@@ -76,16 +76,29 @@ void print_depth(const RgbdSequence& sequence) {
         100.0 * facts.depth_share);
 }
 
-// What a user may miss of a recording that can be used, one sentence each.
+// Whether `dxslam run` can read it.
+bool is_usable(const RecordingInfo& info) {
+  return info.sequence != nullptr && info.sequence->facts().has_depth;
+}
+
+// What a user may miss of a recording that can be read, one sentence each.
 std::vector<std::string> missing_of(const RecordingInfo& info) {
   std::vector<std::string> missing;
   if (!info.sequence->facts().has_depth) {
     missing.emplace_back("depth images, which `dxslam run` needs");
   }
-  const std::vector<SkippedFrame>& skipped = info.sequence->skipped();
-  if (!skipped.empty()) {
-    missing.push_back(
-        fmt::format("{} images were left out; the first: {}", skipped.size(), skipped[0].reason));
+  if (!info.left_out.empty()) {
+    missing.push_back(fmt::format("{} images were left out; the first: {}", info.left_out.size(),
+                                  info.left_out[0].reason));
+  }
+  const ImageCheck& images = info.images;
+  if (images.absent > 0) {
+    missing.push_back(fmt::format("{} of {} images are not there; the first: {}", images.absent,
+                                  info.sequence->size(), images.first_absent));
+  }
+  if (images.damaged > 0) {
+    missing.push_back(fmt::format("{} of {} images looked at cannot be used; the first: {}",
+                                  images.damaged, images.looked_at, images.first_damaged));
   }
   return missing;
 }
@@ -123,7 +136,7 @@ Json info_json(const InfoArguments& arguments, const RecordingInfo& info) {
     row.update(timing_json(topic.timing));
     json["topics"].push_back(std::move(row));
   }
-  json["usable"] = info.sequence != nullptr;
+  json["usable"] = is_usable(info);
   if (info.sequence == nullptr) {
     json["problem"] = info.problem;
     return json;
@@ -146,7 +159,7 @@ void tell(const InfoArguments& arguments) {
   if (!arguments.json.empty()) {
     write_file_atomically(arguments.json, to_json_text(info_json(arguments, info)));
   }
-  if (info.sequence == nullptr) throw CLI::RuntimeError(kBadInput);
+  if (!is_usable(info)) throw CLI::RuntimeError(kBadInput);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "core/error.h"
@@ -25,7 +24,7 @@ std::vector<std::filesystem::path> list_images(const std::string& folder,
 
 cv::Size image_size(const std::vector<std::filesystem::path>& images) {
   std::string first_error;
-  for (std::size_t i = 0; i < std::min<std::size_t>(images.size(), 10); ++i) {
+  for (const std::size_t i : probe_order(images.size())) {
     try {
       return read_color_image(images[i].string()).size();
     } catch (const InputError& e) {

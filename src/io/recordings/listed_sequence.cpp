@@ -59,7 +59,8 @@ class ListedSequence : public RgbdSequence {
     std::size_t pixels = 0;
     std::size_t good = 0;
     std::string first_error;
-    for (std::size_t i = 0; i < std::min(size(), kProbeAttempts) && good < kProbed; ++i) {
+    for (const std::size_t i : probe_order(size())) {
+      if (good >= kProbed || (good > 0 && i >= kProbeAttempts)) break;
       try {
         const RgbdImage image = decode(i);
         collect_depths(image.depth, depths);
@@ -69,7 +70,7 @@ class ListedSequence : public RgbdSequence {
         if (first_error.empty()) first_error = e.what();
       }
     }
-    if (good == 0) throw InputError(first_error);
+    if (good == 0) throw InputError(where() + first_error);
     if (depths.empty()) return;
     facts_.depth_share = static_cast<double>(depths.size()) / static_cast<double>(pixels);
     const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
@@ -79,6 +80,9 @@ class ListedSequence : public RgbdSequence {
   }
 
  private:
+  // Files name themselves, pictures of a bag only their topic.
+  std::string where() const { return listing_.load_color ? listing_.name + ": " : ""; }
+
   RgbdImage decode(std::size_t index) const {
     const ListedFrame& files = listing_.frames[index];
     RgbdImage image;
@@ -163,11 +167,42 @@ void note_on_camera(SequenceListing& listing) {
       listing.calibration_source, c.cx, c.cy, c.width, c.height));
 }
 
+// Rows cannot be read longer than until the next image begins.
+void require_possible_readout(const SequenceListing& listing) {
+  constexpr double kJitter = 1.2;
+  const double readout = listing.camera.readout_time;
+  if (readout == 0.0 || listing.frames.size() < 2) return;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < listing.frames.size(); ++i) {
+    steps.push_back(listing.frames[i].stamp - listing.frames[i - 1].stamp);
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  if (readout <= kJitter * *middle) return;
+  throw InputError(fmt::format(
+      "{}: readout_time is {:g} s, but from image to image of {} it is {:.4g} s, expected less "
+      "than that",
+      listing.calibration_source, readout, listing.name, *middle));
+}
+
 }  // namespace
+
+std::vector<std::size_t> probe_order(std::size_t count) {
+  constexpr std::size_t kSpread = 100;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < std::min(count, kProbeAttempts); ++i) order.push_back(i);
+  const std::size_t rest = count - order.size();
+  const std::size_t wanted = std::min(rest, kSpread);
+  for (std::size_t i = 0; i < wanted; ++i) {
+    order.push_back(kProbeAttempts + (2 * i + 1) * rest / (2 * wanted));
+  }
+  return order;
+}
 
 std::unique_ptr<RgbdSequence> make_sequence(SequenceListing listing) {
   require(!listing.frames.empty(), "a sequence must have frames");
   listing.camera.prepare(listing.calibration_source);
+  require_possible_readout(listing);
   note_on_stamps(listing);
   note_on_camera(listing);
   auto sequence = std::make_unique<ListedSequence>(std::move(listing));

@@ -43,8 +43,13 @@ struct SequenceListing {
   ImageLoader load_color, load_depth;  ///< none: images are files
 };
 
-/// Checks the listing and decodes up to three of the first ten frames. Throws InputError if none
-/// of these is usable or their median depth is not that of a scene (0.05 to 30 m).
+/// Which of `count` images to look at, in order, until some are found good: the first ten, then up
+/// to a hundred spread over all others, as the first ten may be missing.
+std::vector<std::size_t> probe_order(std::size_t count);
+
+/// Checks the listing and decodes up to three frames, of the first ten unless all of these are
+/// bad (probe_order). Throws InputError if none is usable, their median depth is not that of a
+/// scene (0.05 to 30 m), or a rolling shutter would take longer than from image to image.
 std::unique_ptr<RgbdSequence> make_sequence(SequenceListing listing);
 
 }  // namespace dxslam

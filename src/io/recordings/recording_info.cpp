@@ -5,10 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include "core/error.h"
 #include "io/bags/bag_file.h"
 #include "io/bags/bag_streams.h"
+#include "io/recordings/sequence_formats.h"
 
 namespace dxslam {
 namespace {
@@ -34,6 +37,39 @@ std::vector<TopicInfo> topics_of(const std::string& path) {
   std::sort(topics.begin(), topics.end(),
             [](const TopicInfo& a, const TopicInfo& b) { return a.name < b.name; });
   return topics;
+}
+
+// Whether the file of an image is there; the pictures of a bag are in it.
+bool is_there(const std::string& file, const ImageLoader& loader) {
+  std::error_code error;
+  return file.empty() || loader || std::filesystem::exists(file, error);
+}
+
+// Looks for all files; returns the frames whose files are there.
+std::vector<std::size_t> look_for_files(const SequenceListing& listing, ImageCheck& images) {
+  std::vector<std::size_t> present;
+  for (std::size_t i = 0; i < listing.frames.size(); ++i) {
+    const ListedFrame& frame = listing.frames[i];
+    const bool has_color = is_there(frame.color, listing.load_color);
+    if (has_color && is_there(frame.depth, listing.load_depth)) {
+      present.push_back(i);
+    } else if (images.absent++ == 0) {
+      images.first_absent = has_color ? frame.depth : frame.color;
+    }
+  }
+  return present;
+}
+
+// Reads some of the frames, evenly.
+void read_some(const std::vector<std::size_t>& present, RgbdSequence& sequence,
+               ImageCheck& images) {
+  constexpr std::size_t kMost = 40;  // half a second
+  images.looked_at = std::min(kMost, present.size());
+  for (std::size_t i = 0; i < images.looked_at; ++i) {
+    const std::size_t frame = present[i * present.size() / images.looked_at];
+    if (sequence.read(frame) || images.damaged++ > 0) continue;
+    images.first_damaged = sequence.skipped().back().reason;
+  }
 }
 
 }  // namespace
@@ -62,8 +98,11 @@ RecordingInfo inspect_recording(const std::string& path, const SequenceOptions& 
   RecordingInfo info;
   info.format = recognised_format(path, options.format);
   if (info.format == "bag") info.topics = topics_of(path);
+  std::vector<std::size_t> present;
   try {
-    info.sequence = open_sequence(path, options);
+    SequenceListing listing = list_sequence(path, options);
+    present = look_for_files(listing, info.images);
+    info.sequence = make_sequence(std::move(listing));
   } catch (const InputError& e) {
     if (info.topics.empty()) throw;
     info.problem = e.what();
@@ -74,6 +113,8 @@ RecordingInfo inspect_recording(const std::string& path, const SequenceOptions& 
     stamps.push_back(info.sequence->stamp(i));
   }
   info.frames = timing_of(std::move(stamps));
+  info.left_out = info.sequence->skipped();
+  read_some(present, *info.sequence, info.images);
   return info;
 }
 

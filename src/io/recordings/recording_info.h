@@ -31,6 +31,16 @@ struct TopicInfo {
   StreamTiming timing;
 };
 
+/// How whole the images of a recording are. All files are looked for, but only some images are
+/// read.
+struct ImageCheck {
+  std::size_t absent = 0;  ///< frames of which a file is not there
+  std::string first_absent;
+  std::size_t looked_at = 0;  ///< frames read, spread over those whose files are there
+  std::size_t damaged = 0;    ///< of these, ones that cannot be used
+  std::string first_damaged;  ///< why, one sentence
+};
+
 /// What `dxslam info` tells of a recording.
 struct RecordingInfo {
   std::string format;             ///< one of sequence_formats()
@@ -38,7 +48,9 @@ struct RecordingInfo {
   /// The recording; none where it cannot be used, and `problem` then says why in one sentence.
   std::unique_ptr<RgbdSequence> sequence;
   std::string problem;
-  StreamTiming frames;  ///< of the sequence
+  StreamTiming frames;                 ///< of the sequence
+  std::vector<SkippedFrame> left_out;  ///< while it was opened
+  ImageCheck images;
 };
 /// Throws InputError for what is no recording at all, or a bag that cannot be read.
 RecordingInfo inspect_recording(const std::string& path, const SequenceOptions& options);

@@ -24,6 +24,9 @@ SequenceListing list_kitti(const std::string& folder, const SequenceOptions& opt
 SequenceListing list_image_folder(const std::string& folder, const SequenceOptions& options);
 SequenceListing list_bag(const std::string& path, const SequenceOptions& options);
 
+/// What open_sequence() makes its sequence of: lists, calibration and trajectories, but no image.
+SequenceListing list_sequence(const std::string& path, const SequenceOptions& options);
+
 /// Whether `folder` holds frames named as those of 7-Scenes.
 bool has_seven_scenes_frames(const std::string& folder);
 
@@ -46,7 +49,8 @@ bool use_explicit_calibration(const std::string& folder, const SequenceOptions& 
 void use_depth_camera(const DepthCamera& depth_camera, SequenceListing& listing);
 /// Frames from two lists of "stamp file", each colour image with the depth image nearest in time,
 /// or from the association file of the options. Names may have blanks in them. A line that repeats
-/// a stamp is skipped. Fills frames, skipped and notes.
+/// another is skipped, and so is one that cannot be read or is not in order, unless more than one
+/// line in ten is such. Fills frames, skipped and notes.
 void associate_lists(const std::string& folder, const std::string& color_list,
                      const std::string& depth_list, const SequenceOptions& options,
                      SequenceListing& listing);
@@ -56,7 +60,7 @@ void take_truth(SequenceListing& listing, const std::function<Trajectory()>& rea
 /// The images of a folder (list_image_files); its notes go to those of the listing. Throws
 /// InputError if there is none.
 std::vector<std::filesystem::path> list_images(const std::string& folder, SequenceListing& listing);
-/// Size of the first readable one; throws InputError if none of the first ten is.
+/// Size of the first readable one in probe_order(); throws InputError if none is.
 cv::Size image_size(const std::vector<std::filesystem::path>& images);
 /// The camera of SequenceOptions::needs_calibration = false.
 Camera made_up_camera(cv::Size size);

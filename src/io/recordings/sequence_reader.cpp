@@ -162,7 +162,7 @@ void refuse_unused_options(const Format& format, const SequenceOptions& options)
   check("--depth-topic", !options.depth_topic.empty(), Has::kTopics, "files of topics");
 }
 
-SequenceListing list_sequence(const std::string& path, const SequenceOptions& options) {
+SequenceListing checked_listing(const std::string& path, const SequenceOptions& options) {
   if (!(options.max_association_s >= 0.0 && options.max_association_s <= 1e3)) {
     throw InputError(fmt::format("option max_association_s is {} s, expected 0 to 1000",
                                  options.max_association_s));
@@ -207,13 +207,17 @@ std::string known_recordings() {
   return fmt::format("{} or {}", fmt::join(known, ", "), last);
 }
 
-std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
-                                            const SequenceOptions& options) {
+SequenceListing list_sequence(const std::string& path, const SequenceOptions& options) {
   try {
-    return make_sequence(list_sequence(path, options));
+    return checked_listing(path, options);
   } catch (const fs::filesystem_error& e) {
     throw InputError(fmt::format("{}: {}", e.path1().string(), e.code().message()));
   }
+}
+
+std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
+                                            const SequenceOptions& options) {
+  return make_sequence(list_sequence(path, options));
 }
 
 std::string recognised_format(const std::string& path, const std::string& wanted) {
