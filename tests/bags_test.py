@@ -69,6 +69,9 @@ class Containers(unittest.TestCase):
                 cut = self.folder / ("cut_" + name)
                 cut.write_bytes((self.folder / name).read_bytes()[:-400_000])
                 got = self.poses(cut).splitlines()
+                said = dxslam("run", cut, "--max-frames", 1, "--features", "orb").stderr
+                self.assertEqual(said.count(f"{cut}: cut off"), 1, said)
+                self.assertNotIn(f"{cut}: {cut}", said)
                 whole = self.expected.splitlines()
                 self.assertGreater(len(got), FRAMES // 3)
                 self.assertEqual([line.split()[0] for line in got],
@@ -116,7 +119,7 @@ class Containers(unittest.TestCase):
                 self.assertEqual(told["missing"], [])
         done = dxslam("info", ROOT / "tests" / "data" / "bags" / "zstd.mcap", "--json", out)
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("cannot be used: /camera/color/camera_info: camera height is 12", done.stdout)
+        self.assertIn("zstd.mcap: /camera/color/camera_info: camera height is 12", done.stdout)
         self.assertFalse(json.loads(out.read_text())["usable"])
 
     def test_every_command_takes_a_bag(self):

@@ -10,7 +10,9 @@ namespace dxslam::apps {
 std::unique_ptr<RgbdSequence> open_recording(const std::string& path,
                                              const SequenceOptions& options) {
   std::unique_ptr<RgbdSequence> recording = open_sequence(path, options);
-  for (const std::string& note : recording->facts().notes) warn("{}: {}", path, note);
+  for (const std::string& note : recording->facts().notes) {
+    warn("{}{}", note.starts_with(path) ? "" : path + ": ", note);
+  }
   return recording;
 }
 

@@ -87,8 +87,8 @@ std::vector<StampedEntry> stamped_entries(BagFile& bag, const PictureStream& str
   std::string first_damaged;
   for (const BagEntry& entry : in_file_order(bag, stream.topic)) {
     if (list.size() == limits::kFrames) {
-      throw InputError(fmt::format("{}: more than {} images of {}, expected less", listing.name,
-                                   limits::kFrames, stream.name));
+      throw InputError(
+          fmt::format("more than {} images of {}, expected less", limits::kFrames, stream.name));
     }
     try {
       const std::string start = bag.read_start(entry, kHeaderBytes);
@@ -146,10 +146,9 @@ void pair_streams(BagPictures& pictures, const SequenceOptions& options, Sequenc
     pictures.add(color.entry, depth.entry);
   }
   if (!listing.frames.empty()) return;
-  throw InputError(
-      fmt::format("{}: no image of {} has one of {} within {} s, expected streams of one camera",
-                  listing.name, color_stream.name,
-                  pictures.depth() ? pictures.depth()->name : "depth", options.max_association_s));
+  throw InputError(fmt::format(
+      "no image of {} has one of {} within {} s, expected streams of one camera", color_stream.name,
+      pictures.depth() ? pictures.depth()->name : "depth", options.max_association_s));
 }
 
 constexpr double kWorstInverse = 0.5;  // pixels
@@ -239,9 +238,9 @@ void register_depth(BagPictures& pictures, SequenceListing& listing) {
       return;
     }
     throw InputError(fmt::format(
-        "{}: {} has {}x{} pixels, {} has {}x{}, and no camera_info is for the former, expected "
+        "{} has {}x{} pixels, {} has {}x{}, and no camera_info is for the former, expected "
         "depth registered to colour or --calibration with a depth_camera",
-        listing.name, depth.name, depth.size.width, depth.size.height, color.name, color_size.width,
+        depth.name, depth.size.width, depth.size.height, color.name, color_size.width,
         color_size.height));
   }
   const std::string own = realsense_stream(depth.name);
@@ -262,9 +261,9 @@ void register_depth(BagPictures& pictures, SequenceListing& listing) {
   if (!color_from_depth) {
     if (same_lens(lens, listing.camera)) return;
     throw InputError(fmt::format(
-        "{}: {} is of another camera than {} and no transform ties frame {} to {}, expected depth "
+        "{} is of another camera than {} and no transform ties frame {} to {}, expected depth "
         "registered to colour or --calibration with a depth_camera",
-        listing.name, depth.name, color.name, depth.frame, color.frame));
+        depth.name, color.name, depth.frame, color.frame));
   }
   lens.prepare(found->topic);
   use_depth_camera(depth_camera_of(lens, *color_from_depth), listing);
@@ -307,10 +306,8 @@ void note_choice(const std::vector<PictureStream>& streams, const BagPictures& p
       streams.size(), pictures.color().name, pictures.depth() ? pictures.depth()->name : "none"));
 }
 
-}  // namespace
-
-SequenceListing list_bag(const std::string& path, const SequenceOptions& options) {
-  std::unique_ptr<BagFile> bag = open_bag(path);
+SequenceListing list_topics(const std::string& path, std::unique_ptr<BagFile> bag,
+                            const SequenceOptions& options) {
   const std::vector<PictureStream> streams = find_picture_streams(*bag);
   const PictureStream color = choose_color(streams, options.color_topic, path);
   const auto depth = choose_depth(streams, color, options.depth_topic, path);
@@ -330,6 +327,21 @@ SequenceListing list_bag(const std::string& path, const SequenceOptions& options
     return pictures->depth_at(index, frame.depth, size);
   };
   return listing;
+}
+
+}  // namespace
+
+SequenceListing list_bag(const std::string& path, const SequenceOptions& options) {
+  std::unique_ptr<BagFile> bag = open_bag(path);
+  try {
+    return list_topics(path, std::move(bag), options);
+  } catch (const InputError& e) {  // what is inside knows its topic, but not the file
+    const std::string sentence = e.what();
+    const std::string& calibration = options.calibration;
+    const bool names_file =
+        sentence.starts_with(path) || (!calibration.empty() && sentence.starts_with(calibration));
+    throw InputError(names_file ? sentence : fmt::format("{}: {}", path, sentence));
+  }
 }
 
 }  // namespace dxslam

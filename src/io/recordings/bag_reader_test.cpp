@@ -150,6 +150,21 @@ TEST(BagReader, ReadsCompressedPictures) {
   EXPECT_FLOAT_EQ(image->depth.at<float>(20, 30), 1.5F);
 }
 
+TEST(BagReader, NamesTheFileAndTheTopicOfWhatIsWrong) {
+  const TestFolder folder;
+  TestBag bag;
+  bag.add_camera_info("/camera/color/camera_info", "color", test_camera(64, 12));
+  bag.add_image("/camera/color/image_raw", "color", kStart, "bgr8", test_color(64, 12));
+  const std::string text = input_error([&] { open(folder, bag); });
+  EXPECT_THAT(text,
+              testing::StartsWith(folder / "a.bag: /camera/color/camera_info: camera height"));
+  TestBag damaged;
+  damaged.add_camera_info("/camera/color/camera_info", "color", test_camera());
+  damaged.add_image("/camera/color/image_raw", "color", kStart, "bgr8", test_color(32, 24));
+  EXPECT_THAT(input_error([&] { open(folder, damaged); }),
+              testing::StartsWith("a.bag: /camera/color/image_raw at 17"));
+}
+
 TEST(BagReader, TakesTheTopicsThatAreNamed) {
   const TestFolder folder;
   TestBag bag;
