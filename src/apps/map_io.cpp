@@ -2,12 +2,33 @@
 // Copyright 2026 The dxslam authors
 #include "apps/map_io.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <exception>
 
 #include "apps/console.h"
 
 namespace dxslam::apps {
+
+std::optional<std::string> says_other_camera(const Rig& rig, const Camera& camera) {
+  constexpr double kAlike = 0.03;  // of the image's side
+  const auto is_alike = [&](const Camera& c) {
+    const double side = kAlike * c.width;
+    return c.width == camera.width && c.height == camera.height &&
+           std::abs(c.fx - camera.fx) < side && std::abs(c.fy - camera.fy) < side &&
+           std::abs(c.cx - camera.cx) < side && std::abs(c.cy - camera.cy) < side;
+  };
+  const std::vector<Camera>& known = rig.cameras();
+  if (std::any_of(known.begin(), known.end(), is_alike)) return std::nullopt;
+  const Camera& c = known.front();
+  return fmt::format(
+      "the map was made with another camera ({}x{}, fx {:.1f}, fy {:.1f}) than that of the images "
+      "({}x{}, fx {:.1f}, fy {:.1f}): is the calibration right?",
+      c.width, c.height, c.fx, c.fy, camera.width, camera.height, camera.fx, camera.fy);
+}
 
 bool AutoSaver::is_ready() {
   return !under_way_.valid() ||

@@ -4,12 +4,17 @@
 
 #include <functional>
 #include <future>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "slam/stored_system.h"
 
 namespace dxslam::apps {
+
+/// A sentence where no camera of a map is like `camera`: one of both may be described wrongly, and
+/// then nothing is found. Nothing where one is, within a few per cent.
+std::optional<std::string> says_other_camera(const Rig& rig, const Camera& camera);
 
 /// Saves a map in a thread of its own, so that mapping need not wait for the disk. A save that
 /// fails is said once on stderr; the next one tries again. One thread at a time; nothing is thrown.

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "apps/console.h"
 #include "apps/statistics_json.h"
@@ -106,17 +107,37 @@ std::optional<TruthReport> compare_with_truth(const ImageOrigin& recording,
     const AteReport rigid = evaluate_ate(recording.ground_truth(), estimate);
     const AteReport similar = evaluate_ate(recording.ground_truth(), estimate, {Alignment::kSim3});
     return TruthReport{rigid.position, similar.truth_from_estimate.scale(), similar.position.rmse,
-                       extent_of(rigid.pairs)};
+                       extent_of(rigid.pairs),
+                       likely_offset(recording.ground_truth(), estimate, rigid.position.rmse)};
   } catch (const InputError& error) {  // no common stamps, or all on one line
     warn("{}: not compared with the true trajectory: {}", recording.name(), error.what());
     return std::nullopt;
   }
 }
 
+const char* likely_unit(double scale) {
+  constexpr double kNear = 1.25;
+  for (const auto& [per_metre, unit] : {std::pair(1000.0, "millimetres"), {100.0, "centimetres"}}) {
+    if (scale > per_metre / kNear && scale < per_metre * kNear) return unit;
+  }
+  return nullptr;
+}
+
 void print_truth(const TruthReport& report, const Camera& camera) {
   print("ATE {:.4f} m over {} poses, scale {:.3f} against the truth\n", report.position.rmse,
         report.position.count, report.scale);
+  if (report.clock) {
+    warn(
+        "with {:+.3f} s added to the stamps of the images, the error would be {:.4f} m: do the "
+        "clocks of images and truth differ?",
+        report.clock->offset, report.clock->rmse);
+  }
   if (!report.scale_is_wrong()) return;
+  if (const char* unit = likely_unit(report.scale)) {
+    warn("the true path is {:.4g} times as long: is it in {}, expected metres?", report.scale,
+         unit);
+    return;
+  }
   warn(
       "the true path is {:.3g} times as long: with a depth_factor of {:.4g} instead of {:g} they "
       "would agree, if the calibration (fx {:.1f}) is right",

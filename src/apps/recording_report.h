@@ -13,6 +13,7 @@
 #include "core/sequence.h"
 #include "core/trajectory.h"
 #include "evaluation/statistics.h"
+#include "evaluation/time_offset.h"
 
 namespace dxslam::apps {
 
@@ -35,10 +36,11 @@ nlohmann::ordered_json camera_json(const Camera& camera);
 
 /// An estimate beside the true trajectory.
 struct TruthReport {
-  ErrorStatistics position;      ///< metres, aligned by SE(3): the ATE
-  double scale = 1.0;            ///< of an alignment by Sim(3): truth = scale * estimate
-  double rmse_with_scale = 0.0;  ///< metres, of that alignment
-  double extent = 0.0;           ///< metres, of the true path
+  ErrorStatistics position;         ///< metres, aligned by SE(3): the ATE
+  double scale = 1.0;               ///< of an alignment by Sim(3): truth = scale * estimate
+  double rmse_with_scale = 0.0;     ///< metres, of that alignment
+  double extent = 0.0;              ///< metres, of the true path
+  std::optional<TimeOffset> clock;  ///< likely_offset() of the estimate's stamps
   /// By more than 10 %, and the truth shows it: the path is long enough for that.
   bool scale_is_wrong() const;
 };
@@ -46,7 +48,10 @@ struct TruthReport {
 /// both to be aligned.
 std::optional<TruthReport> compare_with_truth(const ImageOrigin& recording,
                                               const Trajectory& estimate);
-/// A line on stdout, and a sentence on stderr if the scale is wrong.
+/// The unit that explains a path `scale` times as long as in metres: millimetres or centimetres.
+/// Null where none does. No depth factor explains it: one so wrong shows in the depth.
+const char* likely_unit(double scale);
+/// A line on stdout, and a sentence on stderr if the scale is wrong, or the clock.
 void print_truth(const TruthReport& report, const Camera& camera);
 nlohmann::ordered_json truth_json(const std::optional<TruthReport>& report);
 

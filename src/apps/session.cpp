@@ -110,6 +110,8 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
   max_depth_ = camera.max_depth;
   std::optional<StoredMap> stored;
   if (map_in) stored.emplace(map_in->get());
+  if (stored) other_camera_ = says_other_camera(stored->map.rig(), camera);
+  if (other_camera_) warn("{}: {}", settings_.map_in, *other_camera_);
   const auto note = [this, on_frame = std::move(on_frame)](const TrackedFrame& frame) {
     on_frame(frame);  // first: it counts the frames, and what is below may throw
     first_pose_.note(frame);
@@ -196,7 +198,10 @@ CallbackFailures Session::tell_callback_failures() const {
 
 std::optional<std::string> Session::why_no_pose() const {
   const bool finds_places = header_.traits.global_dimension > 0;
-  return first_pose_.why_none(options_, !settings_.map_in.empty(), finds_places, stop_requested());
+  auto why =
+      first_pose_.why_none(options_, !settings_.map_in.empty(), finds_places, stop_requested());
+  if (why && other_camera_) *why += "; " + *other_camera_;
+  return why;
 }
 
 void Session::save_map(OutputSteps& steps) {
@@ -210,11 +215,15 @@ void Session::save_map(OutputSteps& steps) {
     warn("{}: not written, for the map is empty", settings_.map_out);
     return;
   }
-  steps.run([&] {
+  map_is_saved_ = steps.run([&] {
     saver_->finish();
     save_system_map(settings_.map_out, header_, system_->map(), system_->closed_loops(),
                     thumbnails_->of(system_->map()));
   });
+}
+
+void Session::tell_map() const {
+  if (map_is_saved_) print("map in {}\n", settings_.map_out);
 }
 
 int judge_tracking(std::size_t tracked, std::size_t frames,

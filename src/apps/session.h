@@ -71,6 +71,8 @@ class Session {
   /// Saves the map where that was asked for. An empty one is not saved, nor one that is not whole;
   /// that is said.
   void save_map(OutputSteps& steps);
+  /// Says on stdout where the map was saved; nothing where none was.
+  void tell_map() const;
   /// All outputs are written: from here on a stop need not wait for this any more.
   void all_is_saved() { unsaved_.reset(); }
 
@@ -83,7 +85,9 @@ class Session {
   std::optional<Thumbnails> thumbnails_;
   std::optional<AutoSaver> saver_;
   MapHeader header_;
-  double max_depth_ = 0.0;  // of the camera, metres
+  std::optional<std::string> other_camera_;  // says that the map was made with one
+  double max_depth_ = 0.0;                   // of the camera, metres
+  bool map_is_saved_ = false;
   System* system_ = nullptr;
   FirstError error_;
   std::optional<Unsaved> unsaved_;

@@ -132,6 +132,24 @@ TimeOffset search_time_offset(const Trajectory& truth, const Trajectory& estimat
   return {best.offset, best.rmse, std::abs(best.offset) >= options.range - kPrecision};
 }
 
+std::optional<TimeOffset> likely_offset(const Trajectory& truth, const Trajectory& estimate,
+                                        double rmse, Alignment alignment) {
+  constexpr double kMuch = 0.5;        // of the error
+  constexpr double kNoticed = 0.01;    // seconds
+  constexpr double kAccurate = 0.01;   // metres; better than that it need not be
+  constexpr std::size_t kFewest = 15;  // poses; few fit at many offsets
+  if (rmse < kAccurate || truth.empty() || estimate.size() < kFewest) return std::nullopt;
+  TimeOffsetOptions options;
+  options.alignment = alignment;
+  try {
+    const TimeOffset found = search_time_offset(truth, estimate, options);
+    const bool helps = found.rmse < kMuch * rmse && std::abs(found.offset) > kNoticed;
+    return helps ? std::optional(found) : std::nullopt;
+  } catch (const InputError&) {  // nothing to align
+    return std::nullopt;
+  }
+}
+
 Trajectory shifted(const Trajectory& trajectory, double seconds) {
   Trajectory moved = trajectory;
   for (StampedPose& pose : moved) pose.stamp += seconds;

@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <optional>
+
 #include "core/trajectory.h"
 #include "evaluation/association.h"
 
@@ -25,6 +27,11 @@ struct TimeOffset {
 /// that can be aligned, ContractError unless both are by rising stamp and not empty.
 TimeOffset search_time_offset(const Trajectory& truth, const Trajectory& estimate,
                               const TimeOffsetOptions& options = {});
+
+/// An offset of up to a second with which the error, `rmse` without it (metres), is less than half
+/// as large: the clocks are likely to differ. None where it cannot be told.
+std::optional<TimeOffset> likely_offset(const Trajectory& truth, const Trajectory& estimate,
+                                        double rmse, Alignment alignment = Alignment::kSe3);
 
 /// Each pose `seconds` later.
 Trajectory shifted(const Trajectory& trajectory, double seconds);

@@ -43,6 +43,23 @@ TEST(TimeOffset, IsFoundToATenthOfAMillisecond) {
   }
 }
 
+TEST(TimeOffset, IsLikelyOnlyWhereItExplainsTheError) {
+  const Trajectory truth = walk(2000, 0.01, 0.0);
+  const Trajectory late = walk(600, 0.033, 0.5);
+  const auto found = likely_offset(truth, late, evaluate_ate(truth, late).position.rmse);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->offset, -0.5, 1e-3);
+  Trajectory noisy = walk(600, 0.03, 0.0);
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    const double error = 0.2 * std::sin(0.05 * static_cast<double>(i * i));
+    const Eigen::Vector3d moved(error, -error, 0.5 * error);
+    noisy[i].world_from_camera = SE3(noisy[i].world_from_camera.rotation(),
+                                     noisy[i].world_from_camera.translation() + moved);
+  }
+  EXPECT_FALSE(likely_offset(truth, noisy, evaluate_ate(truth, noisy).position.rmse));
+  EXPECT_FALSE(likely_offset(truth, walk(5, 0.03, 0.5), 1.0)) << "too few";
+}
+
 TEST(TimeOffset, SaysWhenTheRangeIsTooSmall) {
   const Trajectory truth = walk(2000, 0.01, 0.0);
   EXPECT_TRUE(

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "apps/commands/eval_openloris.h"
 #include "apps/console.h"
 #include "apps/output_steps.h"
+#include "apps/recording_report.h"
 #include "apps/statistics_json.h"
 #include "apps/trajectory_pair.h"
 #include "apps/usage.h"
@@ -114,17 +116,63 @@ void require_pairs(const EvalArguments& arguments, const TrajectoryPair& pair, d
   }
 }
 
+// A clock that is off makes every pose wrong, and nothing else would tell.
+void hint_at_clocks(const EvalArguments& arguments, const TrajectoryPair& pair, double rmse) {
+  if (arguments.search_offset || pair.by_index) return;
+  const auto offset =
+      likely_offset(pair.truth, pair.estimate, rmse, alignment_of(arguments.alignment));
+  if (!offset) return;
+  warn(
+      "with {:+.3f} s added to the stamps of the estimate, the error would be {:.4f} m: do the "
+      "clocks differ? --search-offset 1 takes that into account",
+      offset->offset, offset->rmse);
+}
+
+// A length in another unit, likewise.
+void hint_at_units(const EvalArguments& arguments, const TrajectoryPair& pair) {
+  if (arguments.alignment != "se3") return;
+  try {
+    const double scale =
+        evaluate_ate(pair.truth, pair.estimate, {Alignment::kSim3, max_difference(arguments)})
+            .truth_from_estimate.scale();
+    const char* of_truth = likely_unit(scale);
+    const char* of_estimate = likely_unit(1.0 / scale);
+    if (of_truth == nullptr && of_estimate == nullptr) return;
+    warn(
+        "the true path is {:.4g} times as long as the estimated one: is {} in {}, expected metres?",
+        scale, of_truth != nullptr ? arguments.files.truth : arguments.files.estimate,
+        of_truth != nullptr ? of_truth : of_estimate);
+  } catch (const InputError&) {  // nothing to tell it by
+  }
+}
+
+// A clock that is off so much that no pose has a partner.
+void require_common_stamps(const EvalArguments& arguments, const TrajectoryPair& pair) {
+  const double limit = max_difference(arguments);
+  if (arguments.search_offset || !associate(pair.truth, pair.estimate, limit).empty()) return;
+  const auto offset =
+      likely_offset(pair.truth, pair.estimate, std::numeric_limits<double>::infinity());
+  if (!offset) return;
+  throw InputError(
+      fmt::format("no stamps of truth and estimate are within {:g} s, but with {:+.3f} s added to "
+                  "those of the estimate they fit to {:.4f} m, expected --search-offset 1",
+                  limit, offset->offset, offset->rmse));
+}
+
 void evaluate_ate_command(const EvalArguments& arguments) {
   require_targets(arguments);
   TrajectoryPair pair = load_pair(arguments);
   const std::optional<double> offset = correct_clock(arguments, pair);
   if (offset) require_pairs(arguments, pair, *offset);
+  require_common_stamps(arguments, pair);
   const Trajectory& truth = pair.truth;
   const Trajectory& estimate = pair.estimate;
   const AteReport report =
       evaluate_ate(truth, estimate, {alignment_of(arguments.alignment), max_difference(arguments)});
   print_header();
   print_row("ATE (m)", report.position);
+  hint_at_clocks(arguments, pair, report.position.rmse);
+  hint_at_units(arguments, pair);
   const std::string& alignment = arguments.alignment;
   const double scale = report.truth_from_estimate.scale();
   print("{} of {} estimated poses matched to {} true poses, alignment {}{}\n", report.pairs.size(),

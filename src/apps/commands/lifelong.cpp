@@ -266,6 +266,7 @@ int end(const LifelongArguments& arguments, Session& session, std::deque<Visit>&
   for (const Visit& visit : visits) frames += visit.frames;
   const int code = judge_tracking(localized(visits), frames, session.why_no_pose());
   steps.tell_place(session.folder()->path());
+  session.tell_map();
   return steps.report(stop_requested() ? kInterrupted : code);
 }
 

@@ -10,6 +10,7 @@
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/features_arguments.h"
+#include "apps/map_io.h"
 #include "apps/open_recording.h"
 #include "apps/output_steps.h"
 #include "apps/process.h"
@@ -146,6 +147,9 @@ int relocalize(const RelocalizeArguments& arguments) {
   }
   const std::unique_ptr<FeatureExtractor> extractor = make_extractor(arguments.features);
   const SearchedMap map = open_map(arguments, map_header(*extractor));
+  if (const auto other = says_other_camera(map.stored.map.rig(), sequence->camera())) {
+    warn("{}: {}", arguments.map, *other);
+  }
   const Relocalizer relocalizer(sequence->camera(), extractor->traits(), options.relocalization);
   print_recording(*sequence);
   std::optional<Unsaved> unsaved(std::in_place);

@@ -146,6 +146,7 @@ int end(const ImageOrigin& sequence, Session& session, OnlineTrajectory& online,
   print_outcome(record, sequence, session.system());
   const int code = judge_tracking(record.frames_tracked, record.frames_offered, record.why_no_pose);
   if (session.folder() != nullptr) steps.tell_place(session.folder()->path());
+  session.tell_map();
   return steps.report(record.interrupted ? kInterrupted : code);
 }
 
