@@ -178,6 +178,10 @@ class Permissions(Made):
         self.refuse("run", self.recording, "--features", "orb", "--out", closed)
         self.refuse("run", self.recording, "--features", "orb", "--map-out", closed / "m.dxmap")
         self.refuse("synth", closed / "s")
+        blind = self.folder / "blind"
+        blind.mkdir()
+        blind.chmod(0o333)
+        self.refuse("synth", blind)
 
     def test_few_threads(self):
         # LeakSanitizer wants a thread of its own at the end.

@@ -24,7 +24,8 @@ Failure no_memory() {
 }
 
 Failure refused(const char* what) {
-  return {fmt::format("the operating system refuses what is needed: {}", what), kBadInput};
+  return {fmt::format("the operating system gives no more threads, open files or memory: {}", what),
+          kBadInput};
 }
 
 // Libraries of others throw what is no system_error where they get no thread.

@@ -71,14 +71,24 @@ CLI::ParseError unknown_word(const std::string& word, const char* what,
   return {text, CLI::ExitCodes::InvalidError};
 }
 
+// All behind `--` are arguments, whatever they look like.
+bool is_behind_dashes(const std::string& word, int argc, const char* const* argv) {
+  const auto end = argv + argc;
+  const auto dashes = std::find(argv, end, std::string_view("--"));
+  return std::find(argv, dashes, word) == dashes && std::find(dashes, end, word) != end;
+}
+
 // The first of the words left over that looks like an option, or else the first. CLI11 may give
 // them in any order.
 std::string first_unknown(const std::vector<std::string>& words, const CLI::App& command) {
+  const auto is_word = [](const std::string& word) { return word != "--"; };
   for (const std::string& word : words) {
-    if (word.size() > 1 && word.front() == '-' && find_option(command, word) == nullptr)
+    if (word.size() > 1 && is_word(word) && word.front() == '-' &&
+        find_option(command, word) == nullptr)
       return word;
   }
-  return words.empty() ? std::string() : words.front();
+  const auto first = std::find_if(words.begin(), words.end(), is_word);
+  return first == words.end() ? std::string() : *first;
 }
 
 }  // namespace
@@ -195,13 +205,16 @@ std::string usage_problem(const CLI::App& app, int argc, const char* const* argv
   std::string problem = error.what();
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ArgumentMismatch) &&
       problem.find(": At Most 1 required") != std::string::npos) {
-    problem = problem.substr(0, problem.find(':')) + ": given more than once";
+    const std::string name = problem.substr(0, problem.find(':'));
+    problem = name + (name.starts_with('-') ? ": given more than once"
+                                            : ": more than one given, expected one");
   }
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
     const std::vector<std::string> words = app.remaining(true);
     if (const std::string word = first_unknown(words, *command); !word.empty()) {
-      problem = word.front() == '-' ? unknown_word(word, "option", option_names(*command)).what()
-                                    : fmt::format("{} is one argument too many", in_quotes(word));
+      const bool is_option = word.front() == '-' && !is_behind_dashes(word, argc, argv);
+      problem = is_option ? unknown_word(word, "option", option_names(*command)).what()
+                          : fmt::format("{} is one argument too many", in_quotes(word));
     }
   }
   return fmt::format("{}; see {} --help", problem, help);

@@ -193,6 +193,12 @@ void write_map_colmap(const std::string& folder, const StoredMap& stored) {
 }
 
 std::size_t write_map_thumbnails(const std::string& folder, const StoredMap& stored) {
+  if (std::all_of(stored.thumbnails.begin(), stored.thumbnails.end(),
+                  [](const std::string& picture) { return picture.empty(); })) {
+    throw InputError(fmt::format(
+        "{}: the map has no thumbnails to write there, expected one of `dxslam run --thumbnails`",
+        folder));
+  }
   make_folder(folder);
   std::size_t written = 0;
   for (KeyframeId id = 0; id < stored.thumbnails.size(); ++id) {

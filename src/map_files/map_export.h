@@ -26,7 +26,8 @@ void write_map_ply(const std::string& path, const Map& map, std::uint32_t compon
 /// cannot be written.
 void write_map_colmap(const std::string& folder, const StoredMap& stored);
 
-/// The pictures of the keyframes, named by their ids. Returns how many there are.
+/// The pictures of the keyframes, named by their ids. Returns how many there are; throws InputError
+/// where there is none.
 std::size_t write_map_thumbnails(const std::string& folder, const StoredMap& stored);
 
 }  // namespace dxslam

@@ -164,8 +164,8 @@ std::unique_ptr<FileLock> lock_map_target(const std::string& path) {
   namespace fs = std::filesystem;
   require_map_target(path);
   std::error_code error;
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) return nullptr;  // a stream
   const fs::path target = canonical_target(path);
-  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) return nullptr;
   const std::string name = "." + target.filename().string().substr(0, kLongestInLock) + ".lock";
   try {
     return std::make_unique<FileLock>(

@@ -140,7 +140,11 @@ void require_usable_folder(const std::string& folder, bool overwrite) {
   if (!fs::is_directory(folder, error)) {
     throw InputError(fmt::format("'{}' is a file, expected a folder to write to", folder));
   }
-  if (fs::is_empty(folder, error)) return;
+  const bool is_empty = fs::is_empty(folder, error);
+  if (error) {
+    throw InputError(fmt::format("folder '{}' cannot be read: {}", folder, error.message()));
+  }
+  if (is_empty) return;
   if (!overwrite) {
     throw InputError(
         fmt::format("folder '{}' is not empty, expected a new or empty one (--force "

@@ -55,11 +55,9 @@ void find_loops(const LoopsArguments& arguments) {
   const std::unique_ptr<RgbdSequence> sequence =
       stoppable(open_recording(settings.sequence, reader));
   if (settings.truth == "poses" && sequence->ground_truth().empty()) {
-    const std::string& problem = sequence->facts().truth_problem;
-    throw InputError(
-        fmt::format("{}: the recording has no poses{}{}, expected --ground-truth with "
-                    "a file",
-                    settings.sequence, problem.empty() ? "" : ": ", problem));
+    throw InputError(fmt::format(
+        "{}: the recording has no poses{}, expected --ground-truth with a file", settings.sequence,
+        sequence->facts().truth_problem.empty() ? "" : " that can be read"));
   }
   if (settings.low_light_from && *settings.low_light_from >= sequence->size()) {
     throw InputError(fmt::format("--low-light-from {}: expected a frame of the {} of {}",

@@ -27,7 +27,19 @@ SE3 pose_from_row_major(const double (&values)[16], const std::string& where) {
   if ((matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > 1e-6) {
     throw InputError(fmt::format("{}: last row of the pose is not 0 0 0 1", where));
   }
-  return {Eigen::Quaterniond(rotation), Eigen::Vector3d(matrix.topRightCorner<3, 1>())};
+  const Eigen::Vector3d position = matrix.topRightCorner<3, 1>();
+  require_near(position, where);
+  return {Eigen::Quaterniond(rotation), position};
+}
+
+void require_near(const Eigen::Vector3d& position, const std::string& where) {
+  constexpr double kFarthest = 1e12;  // the solar system, in metres
+  const double farthest = position.cwiseAbs().maxCoeff();
+  if (farthest <= kFarthest) return;
+  throw InputError(
+      fmt::format("{}: position has a coordinate of {:.3g}, expected metres, at most "
+                  "{:g}",
+                  where, farthest, kFarthest));
 }
 
 }  // namespace dxslam

@@ -12,4 +12,8 @@ namespace dxslam {
 /// InputError unless the rotation is orthonormal within 1 % and the last row is 0 0 0 1.
 SE3 pose_from_row_major(const double (&values)[16], const std::string& where);
 
+/// Throws InputError for a position so far away that squares of it say nothing: no unit of length
+/// explains it. `where` is file and line.
+void require_near(const Eigen::Vector3d& position, const std::string& where);
+
 }  // namespace dxslam

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "io/formats/pose_matrix.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/text_file.h"
 
@@ -55,6 +56,7 @@ SE3 pose_of_row(const std::string& path, const TextRow& row, const Eigen::Vector
     throw InputError(fmt::format("{}: quaternion of length {:.4g}, expected 1",
                                  at_line(path, row.line), length));
   }
+  require_near(translation, at_line(path, row.line));
   return {rotation, translation};
 }
 

@@ -44,6 +44,7 @@ TEST(TrajectoryFile, RefusesBrokenRowsByLine) {
   expect("1e300 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n", {"t.txt:4", "after 1e+300,"});
   expect("2 0 0 0 0 0 0 0\n", {"t.txt:3", "length 0", "expected 1"});
   expect("2 0 0 0 1 1 0 1", {"t.txt:3", "length 1.73"});
+  expect("2 1e200 0 0 0 0 0 1\n", {"t.txt:3", "1e+200", "metres"});
   expect(std::string("2 0\0 0", 6), {"t.txt:3", "binary"});
   folder.write("empty.txt", "# nothing\n");
   expect_input_error([&] { read_trajectory(folder / "empty.txt"); }, {"empty.txt", "no pose"});
