@@ -14,7 +14,7 @@ import dxslam
 def watch(events):
     """A thread that is too slow loses old events, and never holds up tracking."""
     tracked = 0
-    positions = {}  # of the map's points, by id
+    positions: dict[int, object] = {}  # of the map's points, by id
     for event in events:  # ends with slam.finish()
         match event:
             case dxslam.FrameTracked(frame=frame):

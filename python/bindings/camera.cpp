@@ -159,7 +159,7 @@ void bind_camera(nb::module_& m) {
           "A camera file that load() reads back to the same camera.")
       .def(
           "__eq__", [](const Camera& a, const Camera& b) { return a == b; }, nb::is_operator(),
-          "All values the same.")
+          nb::sig("def __eq__(self, other: object, /) -> bool"), "All values the same.")
       .def("__hash__", [](const Camera& c) { return std::hash<std::string>()(dump_camera(c, "")); })
       .def("__repr__", [](const Camera& c) {
         return fmt::format("Camera({} x {}, fx={:g}, fy={:g}, cx={:g}, cy={:g}, lens={})", c.width,

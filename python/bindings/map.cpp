@@ -67,7 +67,10 @@ using MapPtr = std::shared_ptr<MapHandle>;
 
 MapPtr merge(const MapPtr& map, const nb::args& others, bool apart) {
   std::vector<std::shared_ptr<const MapHandle>> all{map};
-  for (const nb::handle other : others) all.push_back(nb::cast<MapPtr>(other));
+  for (const nb::handle other : others) {
+    if (!nb::isinstance<MapHandle>(other)) throw nb::type_error("merge() takes other maps");
+    all.push_back(nb::cast<MapPtr>(other));
+  }
   return interruptible([all, apart] {
     StoredMap merged = all.front()->copy();
     for (std::size_t i = 1; i < all.size(); ++i) {
@@ -230,6 +233,7 @@ void bind_files(nb::class_<MapHandle>& map) {
            "Writes a map file, whole or not at all. `exact_descriptors`: floats as they are, four "
            "times as large. Raises InputError if it cannot be written.")
       .def("merge", &merge, nb::arg("others"), nb::arg("apart") = false,
+           nb::sig("def merge(self, *others: Map, apart: bool = False) -> Map"),
            "This map and others in a new one, joined where they show one place; `apart`: not "
            "joined, components of their own. Keyframes get new ids. As `dxslam map merge`.")
       .def(

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ._dxslam import OptionsBase
+from ._dxslam import InputError, OptionsBase
 
 
 def _plain(value: Any) -> Any:

@@ -99,6 +99,8 @@ class Maps(unittest.TestCase):
         poses = joined.keyframes().world_from_camera
         self.assertLess(np.abs(poses[:count] - poses[count:2 * count]).max(), 0.03)
         self.assertEqual(len(self.made.keyframes()), count)
+        with self.assertRaisesRegex(TypeError, "takes other maps"):
+            self.made.merge(self.file)
         joined.save(self.folder / "joined.dxmap")
         self.assertEqual(len(dxslam.Map.load(self.folder / "joined.dxmap").keyframes()),
                          len(joined.keyframes()))

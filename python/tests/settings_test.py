@@ -73,6 +73,8 @@ class OptionsOfASystem(unittest.TestCase):
             path = Path(folder) / "my.yaml"
             path.write_text("tracking:\n  min_inliers: 30\n", encoding="utf-8")
             self.assertEqual(dxslam.Options.load(path).tracking.min_inliers, 30)
+            with self.assertRaisesRegex(dxslam.InputError, "nothing.yaml.*expected a YAML"):
+                dxslam.Options.load(Path(folder) / "nothing.yaml")
 
     def test_copies_are_their_own(self):
         options = dxslam.Options()
