@@ -3,7 +3,6 @@
 #include "ros2/log.h"
 
 #include <rcutils/logging.h>
-#include <rmw/qos_string_conversions.h>
 
 namespace dxslam::ros2 {
 
@@ -22,11 +21,6 @@ void Logger::info(const std::string& sentence) const { write(RCUTILS_LOG_SEVERIT
 void Logger::warn(const std::string& sentence) const { write(RCUTILS_LOG_SEVERITY_WARN, sentence); }
 void Logger::error(const std::string& sentence) const {
   write(RCUTILS_LOG_SEVERITY_ERROR, sentence);
-}
-
-std::string policy_name(rmw_qos_policy_kind_t kind) {
-  const char* name = rmw_qos_policy_kind_to_str(kind);
-  return name ? name : "unknown policy";
 }
 
 }  // namespace dxslam::ros2

@@ -2,8 +2,6 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
-#include <rmw/qos_policy_kind.h>
-
 #include <string>
 
 #include "ros2/entity.h"
@@ -25,8 +23,5 @@ class Logger {
 
   std::string name_;
 };
-
-/// "reliability", "durability" and so on.
-std::string policy_name(rmw_qos_policy_kind_t kind);
 
 }  // namespace dxslam::ros2

@@ -53,6 +53,17 @@ class Node {
   std::shared_ptr<Service<Type>> create_service(const std::string& name,
                                                 typename Service<Type>::Callback callback,
                                                 const Qos& qos = rmw_qos_profile_services_default) {
+    return create_deferred_service<Type>(
+        name,
+        [callback = std::move(callback)](const auto& request, const auto& answer) {
+          callback(request, answer->response);
+        },
+        qos);
+  }
+  template <class Type>
+  std::shared_ptr<Service<Type>> create_deferred_service(
+      const std::string& name, typename Service<Type>::DeferredCallback callback,
+      const Qos& qos = rmw_qos_profile_services_default) {
     return keep(std::make_shared<Service<Type>>(handle_, name, qos, std::move(callback)));
   }
   /// By the node's clock, so that it stands still where a simulation does.
@@ -64,7 +75,7 @@ class Node {
   Parameters& parameters() { return *parameters_; }
   const Clock& clock() const { return clock_; }
   const Logger& log() const { return log_; }
-  /// How many publishers a topic has, whoever reads it, ours included. Any thread.
+  /// How many publishers a topic of that full name has, ours included. Any thread.
   std::size_t count_publishers(const std::string& topic) const;
 
   /// For the executor.

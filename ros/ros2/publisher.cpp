@@ -2,9 +2,6 @@
 // Copyright 2026 The dxslam authors
 #include "ros2/publisher.h"
 
-#include <rcl/event.h>
-#include <rmw/events_statuses/incompatible_qos.h>
-
 #include <utility>
 
 #include "ros2/error.h"
@@ -14,20 +11,17 @@ namespace dxslam::ros2 {
 
 PublisherBase::PublisherBase(NodeHandle node, const rosidl_message_type_support_t& type,
                              const std::string& topic, const Qos& qos)
-    : node_(std::move(node)),
-      handle_(rcl_get_zero_initialized_publisher()),
-      mismatch_(rcl_get_zero_initialized_event()) {
+    : node_(std::move(node)), handle_(rcl_get_zero_initialized_publisher()) {
   rcl_publisher_options_t options = rcl_publisher_get_default_options();
   options.qos = qos;
   check(rcl_publisher_init(&handle_, node_.get(), &type, topic.c_str(), &options),
         "the topic '" + topic + "' cannot be published");
   topic_ = rcl_publisher_get_topic_name(&handle_);
-  check(rcl_publisher_event_init(&mismatch_, &handle_, RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS),
-        "the topic '" + topic + "' cannot be watched");
+  mismatch_.emplace(handle_);
 }
 
 PublisherBase::~PublisherBase() {
-  if (rcl_event_fini(&mismatch_) != RCL_RET_OK) take_rcl_error();
+  mismatch_.reset();
   if (rcl_publisher_fini(&handle_, node_.get()) != RCL_RET_OK) take_rcl_error();
 }
 
@@ -42,23 +36,18 @@ void PublisherBase::publish_any(const void* message) {
   check(rcl_publish(&handle_, message, nullptr), "a message cannot be published on " + topic_);
 }
 
-void PublisherBase::count(WaitSizes& sizes) const { ++sizes.events; }
+void PublisherBase::count(WaitSizes& sizes) const { mismatch_->count(sizes); }
 
-void PublisherBase::add_to(rcl_wait_set_t& set) {
-  check(rcl_wait_set_add_event(&set, &mismatch_, &index_), "cannot wait for " + what());
-}
+void PublisherBase::add_to(rcl_wait_set_t& set) { mismatch_->add_to(set); }
 
-bool PublisherBase::is_ready(const rcl_wait_set_t& set) const { return set.events[index_]; }
+bool PublisherBase::is_ready(const rcl_wait_set_t& set) const { return mismatch_->is_ready(set); }
 
 void PublisherBase::execute() {
-  rmw_offered_qos_incompatible_event_status_t status{};
-  if (rcl_take_event(&mismatch_, &status) != RCL_RET_OK) {
-    take_rcl_error();
-    return;
+  if (const auto policy = mismatch_->take()) {
+    Logger(node_).warn("Somebody reads " + topic_ +
+                       " and gets nothing: it asks for more than is offered (" +
+                       policy_name(*policy) + ").");
   }
-  Logger(node_).warn("Somebody reads " + topic_ +
-                     " and gets nothing: it asks for more than is offered (" +
-                     policy_name(status.last_policy_kind) + ").");
 }
 
 std::string PublisherBase::what() const { return "the publisher of " + topic_; }

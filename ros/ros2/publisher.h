@@ -5,17 +5,19 @@
 #include <rcl/publisher.h>
 
 #include <cstddef>
-#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "ros2/entity.h"
 #include "ros2/qos.h"
+#include "ros2/qos_mismatch.h"
 #include "ros2/type_support.h"
 
 namespace dxslam::ros2 {
 
 /// What Publisher is without the type of its messages. Made by Node. As an entity it only says in
-/// the log, once per kind, that somebody asks for more than it offers.
+/// the log that somebody asks for more than it offers.
 class PublisherBase : public Entity {
  public:
   PublisherBase(NodeHandle node, const rosidl_message_type_support_t& type,
@@ -39,8 +41,7 @@ class PublisherBase : public Entity {
  private:
   NodeHandle node_;
   rcl_publisher_t handle_;
-  rcl_event_t mismatch_;
-  std::size_t index_ = 0;
+  std::optional<QosMismatch> mismatch_;
   std::string topic_;
 };
 

@@ -2,9 +2,6 @@
 // Copyright 2026 The dxslam authors
 #include "ros2/subscription.h"
 
-#include <rcl/event.h>
-#include <rmw/events_statuses/incompatible_qos.h>
-
 #include "ros2/error.h"
 #include "ros2/log.h"
 
@@ -13,23 +10,33 @@ namespace dxslam::ros2 {
 SubscriptionBase::SubscriptionBase(NodeHandle node, const rosidl_message_type_support_t& type,
                                    const std::string& topic, const Qos& qos)
     : node_(std::move(node)),
-      handle_(rcl_get_zero_initialized_subscription()),
-      mismatch_(rcl_get_zero_initialized_event()) {
-  rcl_subscription_options_t options = rcl_subscription_get_default_options();
-  options.qos = qos;
-  const rcl_ret_t result =
-      rcl_subscription_init(&handle_, node_.get(), &type, topic.c_str(), &options);
-  const std::string reason = result == RCL_RET_OK ? "" : take_rcl_error();
-  if (rcl_subscription_options_fini(&options) != RCL_RET_OK) take_rcl_error();
-  if (result != RCL_RET_OK) throw Error("the topic '" + topic + "' cannot be read: " + reason);
+      type_(type),
+      asked_topic_(topic),
+      qos_(qos),
+      may_ask_for_less_(qos.reliability == RMW_QOS_POLICY_RELIABILITY_BEST_AVAILABLE),
+      handle_(rcl_get_zero_initialized_subscription()) {
+  if (may_ask_for_less_) qos_.reliability = RMW_QOS_POLICY_RELIABILITY_RELIABLE;
+  open();
   topic_ = rcl_subscription_get_topic_name(&handle_);
-  check(rcl_subscription_event_init(&mismatch_, &handle_,
-                                    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS),
-        "the topic '" + topic + "' cannot be watched");
 }
 
-SubscriptionBase::~SubscriptionBase() {
-  if (rcl_event_fini(&mismatch_) != RCL_RET_OK) take_rcl_error();
+SubscriptionBase::~SubscriptionBase() { close(); }
+
+void SubscriptionBase::open() {
+  rcl_subscription_options_t options = rcl_subscription_get_default_options();
+  options.qos = qos_;
+  const rcl_ret_t result =
+      rcl_subscription_init(&handle_, node_.get(), &type_, asked_topic_.c_str(), &options);
+  const std::string reason = result == RCL_RET_OK ? "" : take_rcl_error();
+  if (rcl_subscription_options_fini(&options) != RCL_RET_OK) take_rcl_error();
+  if (result != RCL_RET_OK) {
+    throw Error("the topic '" + asked_topic_ + "' cannot be read: " + reason);
+  }
+  mismatch_.emplace(handle_);
+}
+
+void SubscriptionBase::close() {
+  mismatch_.reset();
   if (rcl_subscription_fini(&handle_, node_.get()) != RCL_RET_OK) take_rcl_error();
 }
 
@@ -50,34 +57,41 @@ bool SubscriptionBase::take_any(void* message) {
 
 void SubscriptionBase::count(WaitSizes& sizes) const {
   ++sizes.subscriptions;
-  ++sizes.events;
+  mismatch_->count(sizes);
 }
 
 void SubscriptionBase::add_to(rcl_wait_set_t& set) {
   check(rcl_wait_set_add_subscription(&set, &handle_, &index_), "cannot wait for " + what());
-  check(rcl_wait_set_add_event(&set, &mismatch_, &event_index_), "cannot wait for " + what());
+  mismatch_->add_to(set);
 }
 
 bool SubscriptionBase::is_ready(const rcl_wait_set_t& set) const {
   has_message_ = set.subscriptions[index_];
-  has_event_ = set.events[event_index_];
+  has_event_ = mismatch_->is_ready(set);
   return has_message_ || has_event_;
 }
 
 void SubscriptionBase::execute() {
-  if (has_event_) report_mismatch();
+  // Messages first: meeting a mismatch may drop those that wait.
   if (has_message_) take_and_call();
+  if (has_event_) meet_mismatch();
 }
 
-void SubscriptionBase::report_mismatch() {
-  rmw_requested_qos_incompatible_event_status_t status{};
-  if (rcl_take_event(&mismatch_, &status) != RCL_RET_OK) {
-    take_rcl_error();
+void SubscriptionBase::meet_mismatch() {
+  const auto policy = mismatch_->take();
+  if (!policy) return;
+  const Logger log(node_);
+  if (*policy != RMW_QOS_POLICY_RELIABILITY || !may_ask_for_less_) {
+    log.warn("Somebody publishes " + topic_ +
+             " and is not heard: it offers less than is asked for (" + policy_name(*policy) + ").");
     return;
   }
-  Logger(node_).warn("Somebody publishes " + topic_ +
-                     " and is not heard: it offers less than is asked for (" +
-                     policy_name(status.last_policy_kind) + ").");
+  may_ask_for_less_ = false;
+  qos_.reliability = RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT;
+  close();
+  open();
+  log.warn(topic_ + " is published best effort, so messages may be lost; let the publisher be " +
+           "reliable if too many are.");
 }
 
 std::string SubscriptionBase::what() const { return "the subscription of " + topic_; }

@@ -7,17 +7,19 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "ros2/entity.h"
 #include "ros2/qos.h"
+#include "ros2/qos_mismatch.h"
 #include "ros2/type_support.h"
 
 namespace dxslam::ros2 {
 
-/// What Subscription is without the type of its messages. Made by Node. Says in the log, once per
-/// kind, that a publisher offers less than it asks for.
+/// What Subscription is without the type of its messages. Made by Node. Where a publisher offers
+/// less than is asked for, the log says so, or, with camera_data(), less is asked for.
 class SubscriptionBase : public Entity {
  public:
   SubscriptionBase(NodeHandle node, const rosidl_message_type_support_t& type,
@@ -26,7 +28,7 @@ class SubscriptionBase : public Entity {
 
   /// The full name, after remapping.
   const std::string& topic() const { return topic_; }
-  /// How many publishers reach it now. Any thread.
+  /// How many publishers reach it now. In the executor's thread.
   std::size_t publisher_count() const;
 
   void count(WaitSizes& sizes) const override;
@@ -41,13 +43,18 @@ class SubscriptionBase : public Entity {
   virtual void take_and_call() = 0;
 
  private:
-  void report_mismatch();
+  void open();
+  void close();
+  void meet_mismatch();
 
   NodeHandle node_;
+  const rosidl_message_type_support_t& type_;
+  std::string asked_topic_;
+  Qos qos_;
+  bool may_ask_for_less_ = false;
   rcl_subscription_t handle_;
-  rcl_event_t mismatch_;
+  std::optional<QosMismatch> mismatch_;
   std::size_t index_ = 0;
-  std::size_t event_index_ = 0;
   mutable bool has_message_ = false;
   mutable bool has_event_ = false;
   std::string topic_;

@@ -41,7 +41,7 @@ class Probe {
     features_ = node_.create_publisher<dxslam_msgs::msg::Features>("~/features", latched());
     ticks_ = node_.create_publisher<std_msgs::msg::Header>("~/ticks", reliable());
     images_ = node_.create_subscription<sensor_msgs::msg::Image>(
-        "image", reliable(40), [this](const auto& image) { send_back(*image); });
+        "image", camera_data(40), [this](const auto& image) { send_back(*image); });
     faulty_ = node_.create_subscription<std_msgs::msg::Header>(
         "faulty", reliable(),
         [](const auto& message) { throw std::runtime_error(message->frame_id); });
@@ -103,19 +103,25 @@ class Probe {
           response.message = "begun";
           throw std::runtime_error("it broke");
         });
-    // Answers the second time, by a thread and a task: what events of the library will do.
-    posted_ = node_.create_service<std_srvs::srv::Trigger>(
-        "~/post", [this](const auto& /*request*/, auto& response) {
-          std::thread([this] { executor_.post([this] { ++posts_; }); }).join();
-          response.success = true;
-          response.message = std::to_string(posts_);
+    // As events of the library will: another thread posts a task, which answers.
+    posted_ = node_.create_deferred_service<std_srvs::srv::Trigger>(
+        "~/post", [this](const auto& /*request*/, auto answer) {
+          worker_ = std::jthread([this, answer] {
+            executor_.post([this, answer] {
+              answer->response.success = true;
+              answer->response.message = std::to_string(++posts_);
+              answer->send();
+            });
+          });
         });
-    count_ = node_.create_service<std_srvs::srv::Trigger>("~/count", [this](const auto& /*request*/,
-                                                                            auto& response) {
-      response.success = true;
-      response.message = std::to_string(node_.count_publishers(images_->topic())) + " " +
-                         std::to_string(back_->subscriber_count()) + " " + std::to_string(posts_);
-    });
+    dropped_ = node_.create_deferred_service<std_srvs::srv::Trigger>(
+        "~/drop", [](const auto& /*request*/, auto answer) { answer->response.message = "gone"; });
+    count_ = node_.create_service<std_srvs::srv::Trigger>(
+        "~/count", [this](const auto& /*request*/, auto& response) {
+          response.success = true;
+          response.message = std::to_string(node_.count_publishers(images_->topic())) + " " +
+                             std::to_string(back_->subscriber_count());
+        });
   }
 
   void send_back(const sensor_msgs::msg::Image& image) {
@@ -168,8 +174,10 @@ class Probe {
   std::shared_ptr<Service<dxslam_msgs::srv::SaveMap>> save_;
   std::shared_ptr<Service<std_srvs::srv::Trigger>> broken_;
   std::shared_ptr<Service<std_srvs::srv::Trigger>> posted_;
+  std::shared_ptr<Service<std_srvs::srv::Trigger>> dropped_;
   std::shared_ptr<Service<std_srvs::srv::Trigger>> count_;
   std::shared_ptr<Timer> timer_;
+  std::jthread worker_;
 };
 
 }  // namespace
