@@ -2,7 +2,10 @@
 // Copyright 2026 The dxslam authors
 #include "bindings/system.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <future>
 #include <stdexcept>
@@ -83,7 +86,10 @@ void PySystem::load_map(MapHandle& map) {
 }
 
 void PySystem::begin_sequence() {
-  in_turn([this] { system_->begin_sequence(); });
+  in_turn([this] {
+    system_->begin_sequence();
+    last_stamp_.reset();
+  });
 }
 
 void PySystem::set_mapping(bool on) {
@@ -91,10 +97,24 @@ void PySystem::set_mapping(bool on) {
   system_->set_mapping(on);
 }
 
+void PySystem::take_stamp(double stamp) {
+  if (!std::isfinite(stamp)) {
+    throw InputError(fmt::format("the stamp is {}, expected seconds", stamp));
+  }
+  if (last_stamp_ && stamp <= *last_stamp_) {
+    throw InputError(
+        fmt::format("the stamp is {} s after one of {} s, expected rising ones, or "
+                    "begin_sequence() before another recording",
+                    stamp, *last_stamp_));
+  }
+  last_stamp_ = stamp;
+}
+
 bool PySystem::process(RgbdImage image, bool live) {
   require_size(image.color, image.depth, camera_);
   bool taken = true;
   in_turn([&] {
+    take_stamp(image.stamp);
     next_index_ = image.index + 1;
     if (live) {
       taken = system_->try_process(image);

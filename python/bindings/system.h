@@ -74,6 +74,8 @@ class PySystem {
   // Works off what `work` does in the turn of the caller, without the GIL.
   template <class Work>
   void in_turn(const Work& work);
+  // Throws InputError for a stamp that does not follow the one before.
+  void take_stamp(double stamp);
 
   Camera camera_;
   SystemOptions options_;
@@ -83,6 +85,7 @@ class PySystem {
   std::vector<std::string> thumbnails_;  // of the map that it goes on with
   std::mutex turn_;
   std::int64_t next_index_ = 0;
+  std::optional<double> last_stamp_;  // of this recording
   bool has_map_ = false;
   std::atomic<bool> finished_{false};
 };

@@ -72,7 +72,11 @@ class Images(unittest.TestCase):
                 slam.process(stamp, color, depth[:-1])
             with self.assertRaisesRegex(dxslam.InputError, "depth image is float64 .* expected float32"):
                 slam.process(stamp, color, depth.astype(np.float64))
+            with self.assertRaisesRegex(dxslam.InputError, "stamp is nan, expected seconds"):
+                slam.process(float("nan"), color, depth)
             slam.process(stamp, color, depth)
+            with self.assertRaisesRegex(dxslam.InputError, "expected rising ones, or begin_sequence"):
+                slam.process(stamp, color, depth)
         self.assertEqual(len(slam.frames()), 1)
         self.assertEqual(slam.frames()[0].index, 0)
 
