@@ -1,7 +1,7 @@
 # The common tasks by name; `make help` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build install deb demo docs test ros train benchmark format check-format tidy asan tsan clean
+.PHONY: help setup build install deb wheel demo docs test ros train benchmark format check-format tidy asan tsan clean
 
 JOBS ?= $(shell nproc)
 PRESET ?= release
@@ -9,6 +9,9 @@ BUILD = build/$(PRESET)
 DXSLAM = build/release/dxslam
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 CLANG_FORMAT ?= clang-format-19
+
+# Paths below are relative for the compiler cache, so the builds of program and wheel share its results.
+export CCACHE_BASEDIR = $(CURDIR)
 
 help:  ## this list
 	@sed -n 's/^\([a-z][a-z -]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 22
@@ -30,6 +33,10 @@ install: setup $(BUILD)/build.ninja  ## program and C++ library to PREFIX (defau
 deb: setup $(BUILD)/build.ninja  ## a Debian package of the same, in the build folder (scripts/check_deb tests it)
 	cmake --build $(BUILD) -j $(JOBS) --target dxslam dxslam_library
 	cd $(BUILD) && cpack -G DEB
+
+wheel: SETUP_OPTIONS = --with-eval
+wheel: setup  ## the Python package as one wheel, in build/wheel/dist
+	@scripts/build_wheel
 
 demo: build  ## make a synthetic recording, run SLAM on it, evaluate and draw the result
 	@rm -rf out/demo

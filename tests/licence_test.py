@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
@@ -57,6 +58,39 @@ class Program(unittest.TestCase):
         done = subprocess.run([ROOT / "scripts" / "licence_scan", ROOT / "nothing"], text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.assertEqual(done.returncode, 2, done.stdout)
+
+
+class Wheel(unittest.TestCase):
+    PNG = scan.LIBRARIES / "libpng16.so.16"
+    LICENCE = "p.dist-info/licenses/libpng16-16/copyright"
+
+    def problems(self, files):
+        """What the scan says on stderr of a wheel with such files: {name: file or text}."""
+        with tempfile.TemporaryDirectory() as folder:
+            wheel = Path(folder) / "p-1-py3-none-any.whl"
+            with zipfile.ZipFile(wheel, "w") as archive:
+                for name, content in files.items():
+                    is_file = isinstance(content, Path)
+                    archive.writestr(name, content.read_bytes() if is_file else content)
+            done = subprocess.run([ROOT / "scripts" / "licence_scan", wheel], text=True,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1 if done.stderr else 0, done.stderr)
+        return done.stderr
+
+    def test_libraries_need_a_licence_text(self):
+        copy = f"p.libs/libpng16-0123abcd{self.PNG.resolve().name.removeprefix('libpng16')}"
+        self.assertIn("libpng16-16, whose licence", self.problems({copy: self.PNG}))
+        text = copyright_file("Files: *\nLicense: libpng")
+        self.assertEqual(self.problems({copy: self.PNG, self.LICENCE: text}), "")
+        text = copyright_file("Files: *\nLicense: GPL-2")
+        self.assertIn("libpng16-16: GPL-2", self.problems({copy: self.PNG, self.LICENCE: text}))
+
+    def test_nothing_may_be_missing(self):
+        self.assertIn("libpng16.so.16 is needed", self.problems({"p/p.so": scan.LIBRARIES / "libfreetype.so.6"}))
+        self.assertEqual(self.problems({"p/p.so": self.PNG}), "")
+
+    def test_strangers_are_refused(self):
+        self.assertIn("of None", self.problems({"p.libs/libmine-0123abcd.so.1": self.PNG}))
 
 
 class Judgement(unittest.TestCase):
