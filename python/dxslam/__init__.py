@@ -14,7 +14,12 @@ Poses are `world_from_camera`, 4 x 4, metres: x right, y down, z forward. docs/p
 """
 from pathlib import Path as _Path
 
-from . import _dxslam
+try:
+    from . import _dxslam
+except ImportError as _error:
+    from ._openvino import load_elsewhere as _load_elsewhere
+    _load_elsewhere(_error)
+    from . import _dxslam
 from . import evaluate
 from ._dxslam import (
     AteReport, Camera, ComponentSummary, ContractError, Error, ErrorStatistics, Event, Extractor,
