@@ -202,8 +202,14 @@ class LastResults(Outputs):
         trajectory = self.out / "trajectory.txt"
         # By its time: the number of a removed file may be given to the new one.
         old = trajectory.stat().st_mtime_ns if trajectory.exists() else None
-        while (not trajectory.exists() or trajectory.stat().st_mtime_ns == old or
-               len(poses(trajectory)) < 3):
+
+        def has_begun():
+            try:
+                return trajectory.stat().st_mtime_ns != old and len(poses(trajectory)) >= 3
+            except FileNotFoundError:  # not there yet, or on its way to `previous`
+                return False
+
+        while not has_begun():
             self.assertIsNone(process.poll(), "the run ended before it was stopped")
             self.assertLess(time.monotonic(), deadline, "no pose appeared")
             time.sleep(0.01)
