@@ -379,15 +379,17 @@ class Start(RosTest):
             file = Path(folder) / "parameters.yaml"
             file.write_text("/**:\n  ros__parameters: {rate: 5.0, mode: localization}\n"
                             "/robot/probe:\n  ros__parameters: {grid: {levels: 8}, rate: 7}\n"
-                            "/other:\n  ros__parameters: {mode: sleep}\n")
+                            "/*/probe:\n  ros__parameters: {weights: [4.0, 5.0]}\n"
+                            "/other:\n  ros__parameters: {mode: sleep}\n"
+                            "/*:\n  ros__parameters: {mode: sleep}\n")
             self.start("--ros-args", "-r", "__ns:=/robot", "--params-file", str(file),
-                       "-p", "frame:=optical", "-p", "weights:=[3.0]")
+                       "-p", "frame:=optical")
             values = self.call(
                 GetParameters, "/robot/probe/get_parameters", GetParameters.Request(
                     names=["rate", "mode", "grid.levels", "frame", "weights"])).values
         self.assertEqual((values[0].double_value, values[1].string_value, values[2].integer_value,
                           values[3].string_value, list(values[4].double_array_value)),
-                         (7.0, "localization", 8, "optical", [3.0]))
+                         (7.0, "localization", 8, "optical", [4.0, 5.0]))
 
     def test_bad_starts_are_refused_in_a_sentence(self):
         self.assertIn("probe: rate is 0.5 to 60, not 100.\n", self.refused("-p", "rate:=100.0"))
