@@ -71,12 +71,18 @@ class RosTest(unittest.TestCase):
         self.executor.add_node(self.node)
 
     def tearDown(self):
-        for probe in self.probes:
-            probe.kill()
-            probe.communicate()
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown()
+        for probe in self.probes:  # whatever it did, it can end
+            if probe.poll() is None:
+                probe.send_signal(signal.SIGTERM)
+                try:
+                    _, errors = probe.communicate(timeout=PATIENCE)
+                finally:
+                    probe.kill()
+                self.assertEqual(probe.returncode, 0, errors)
+            probe.stderr.close()
 
     def start(self, *arguments, **options):
         probe = subprocess.Popen([PROBE, *arguments], stderr=subprocess.PIPE, text=True, **options)
