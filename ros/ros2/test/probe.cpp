@@ -119,8 +119,12 @@ class Probe {
     count_ = node_.create_service<std_srvs::srv::Trigger>(
         "~/count", [this](const auto& /*request*/, auto& response) {
           response.success = true;
-          response.message = std::to_string(node_.count_publishers(images_->topic())) + " " +
-                             std::to_string(back_->subscriber_count());
+          // What the graph says, then what is connected.
+          for (const std::size_t count :
+               {node_.count_publishers(images_->topic()), images_->publisher_count(),
+                back_->subscriber_count(), transforms_->subscriber_count()}) {
+            response.message += std::to_string(count) + " ";
+          }
         });
   }
 

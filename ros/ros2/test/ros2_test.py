@@ -110,6 +110,10 @@ class RosTest(unittest.TestCase):
         self.node.create_subscription(kind, topic, messages.append, qos)
         return messages
 
+    def counts(self):
+        """Publishers of image, in the graph and connected; readers of image_back and of /tf."""
+        return self.call(Trigger, "probe/count", Trigger.Request()).message
+
     def nodes(self):
         return {f"{space.rstrip('/')}/{name}"
                 for name, space in self.node.get_node_names_and_namespaces()}
@@ -138,8 +142,7 @@ class Topics(RosTest):
         transforms = self.collect(TFMessage, "/tf", 100)
         publisher = self.node.create_publisher(Image, "image", 100)
         self.wait_for("both ends", lambda: publisher.get_subscription_count() == 1 and
-                      self.node.count_publishers("image_back") == 1 and
-                      self.node.count_publishers("/tf") == 1)
+                      self.counts() == "1 1 1 1 ")
         sent = [image(index) for index in range(60)]
         for message in sent:
             begun = time.monotonic()
@@ -172,8 +175,8 @@ class Topics(RosTest):
     def logged(self, *words):
         """Whether a line of the probe's log has them all; ask from the start of a test on."""
         if not hasattr(self, "log"):
-            self.log = self.collect(Log, "/rosout", 100)
-            self.wait_for("/rosout", lambda: self.node.count_publishers("/rosout") >= 2)
+            self.log = self.collect(Log, "/rosout", QoSProfile(
+                depth=100, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL))
         return any(line.name == "probe" and all(word in line.msg for word in words)
                    for line in self.log)
 
@@ -203,9 +206,11 @@ class Topics(RosTest):
         self.start()
         self.logged()
         publisher = self.node.create_publisher(Header, "faulty", 10)
-        self.wait_for("the probe", lambda: publisher.get_subscription_count() == 1)
-        publisher.publish(Header(frame_id="a wrong frame"))
-        self.wait_for("the error", lambda: self.logged("/faulty", "a wrong frame"))
+
+        def reported():
+            publisher.publish(Header(frame_id="a wrong frame"))
+            return self.logged("/faulty", "a wrong frame")
+        self.wait_for("the error", reported)
         self.assertTrue(self.call(Trigger, "probe/count", Trigger.Request()).success)
 
 
@@ -238,11 +243,9 @@ class Services(RosTest):
         self.start()
         self.collect(Image, "image_back")
         first, second = (self.node.create_publisher(Image, "image", 10) for _ in range(2))
-        self.wait_for("two publishers", lambda: self.call(
-            Trigger, "probe/count", Trigger.Request()).message == "2 1")
+        self.wait_for("two publishers", lambda: self.counts() == "2 2 1 0 ")
         self.node.destroy_publisher(second)
-        self.wait_for("one publisher", lambda: self.call(
-            Trigger, "probe/count", Trigger.Request()).message == "1 1")
+        self.wait_for("one publisher", lambda: self.counts() == "1 1 1 0 ")
 
 
 class Parameters(RosTest):
@@ -307,7 +310,8 @@ class Parameters(RosTest):
     def test_sets_and_tells(self):
         self.start()
         events = self.collect(ParameterEvent, "/parameter_events", 100)
-        self.wait_for("events", lambda: self.node.count_publishers("/parameter_events") >= 2)
+        self.wait_for("events", lambda: self.set(rate=10.0) and self.changes(events))
+        told = len(self.changes(events))
         results = self.set(rate=20.0, grid__levels=6, mode="localization")
         self.assertEqual([result.successful for result in results], [True] * 3)
         values = self.get("rate", "grid.levels", "mode")
@@ -315,8 +319,16 @@ class Parameters(RosTest):
                          (20.0, 6, "localization"))
         self.assertTrue(self.set(rate=30)[0].successful, "a whole number is a number")
         self.assertEqual(self.get("rate")[0].double_value, 30.0)
-        self.wait_for("four events", lambda: len(
-            [event for event in events if event.node == "/probe" and event.changed_parameters]) == 4)
+        self.wait_for("four events", lambda: len(self.changes(events)) >= told + 4)
+        self.assertEqual(
+            [(name, value.double_value) for name, value in self.changes(events)][-1], ("rate", 30.0))
+        self.assertEqual([name for name, _ in self.changes(events)][-4:],
+                         ["rate", "grid.levels", "mode", "rate"])
+
+    @staticmethod
+    def changes(events):
+        return [(parameter.name, parameter.value) for event in events if event.node == "/probe"
+                for parameter in event.changed_parameters]
 
     def test_refuses_with_a_sentence(self):
         self.start()
