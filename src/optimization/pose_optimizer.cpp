@@ -75,6 +75,15 @@ class Problem {
                    [](const PoseObservation& o) { return static_cast<char>(usable(o)); });
   }
 
+  /// Numbers measured by the observations in the mask.
+  int residuals(const std::vector<char>& mask) const {
+    int sum = 0;
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      if (mask[i] != 0) sum += observations_[i].measured.has_disparity() ? 3 : 2;
+    }
+    return sum;
+  }
+
   double rms_pixels(const SE3& camera_from_world, const std::vector<char>& mask,
                     int inliers) const {
     double sum = 0.0;
@@ -180,10 +189,22 @@ PoseReport optimize_pose(const Camera& camera, const SE3& world_from_camera,
   System system;
   problem.linearise(camera_from_world, mask, false, system);
   report.information = system.hessian.selfadjointView<Eigen::Lower>();
+  const int degrees = problem.residuals(mask) - 6;
+  if (degrees > 0) report.variance_factor = system.cost / degrees;
   report.rms_pixels = problem.rms_pixels(camera_from_world, mask, report.inliers);
   report.world_from_camera = camera_from_world.inverse();
   report.success = true;
   return report;
+}
+
+// exp(e) on the left of camera_from_world is exp(-e) on the right of its inverse.
+std::optional<Matrix6d> pose_covariance(const Matrix6d& information, double variance_factor) {
+  const Eigen::LLT<Matrix6d> factors(information);
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  const Matrix6d inverse = factors.solve(Matrix6d::Identity());
+  const Matrix6d covariance = 0.5 * variance_factor * (inverse + inverse.transpose());
+  const bool usable = covariance.allFinite() && (covariance.diagonal().array() > 0.0).all();
+  return usable ? std::optional<Matrix6d>(covariance) : std::nullopt;
 }
 
 }  // namespace dxslam

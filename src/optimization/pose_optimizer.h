@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/camera.h"
@@ -47,9 +48,17 @@ struct PoseReport {
   std::vector<char> inlier;  ///< one an observation
   int inliers = 0;
   double rms_pixels = 0.0;  ///< over inliers, pixel part of the residual
-  /// Inverse covariance of the left perturbation (rho, phi) of camera_from_world, at the solution.
+  /// Inverse covariance of the left perturbation (rho, phi) of camera_from_world, at the solution,
+  /// if the deviations of the measurements are right.
   Matrix6d information = Matrix6d::Zero();
+  /// Variance of the inliers' residuals over what their deviations say: 1 where these are right.
+  double variance_factor = 1.0;
 };
+
+/// Covariance of a pose found by optimize_pose(): of e in true world_from_camera =
+/// world_from_camera * SE3::exp(e), e = (rho, phi) in metres and radians along the axes of the
+/// camera. Arguments as in PoseReport. Nothing where the observations leave a direction open.
+std::optional<Matrix6d> pose_covariance(const Matrix6d& information, double variance_factor);
 
 /// Motion-only bundle adjustment: the camera pose that best explains the observations, by
 /// Levenberg-Marquardt with a Huber kernel on (u, v) or (u, v, u - disparity) residuals.

@@ -177,6 +177,50 @@ TEST(PoseOptimizer, InformationIsTheInverseCovarianceOfThePose) {
   EXPECT_NEAR(sum / kRounds, 6.0, 0.6);
 }
 
+// Whatever deviations were assumed: the residuals say how noisy the image is.
+TEST(PoseOptimizer, CovarianceFitsTheErrorWhateverTheNoise) {
+  SampleSource source(15);
+  for (const double noise : {0.3, 1.0, 2.0}) {
+    const PoseScene clean = make_scene(source, 80, 0.0, 0.0);
+    PoseOptimizerOptions options;
+    options.chi2_pixel = options.chi2_depth = 100.0;
+    double sum = 0.0;
+    double along = 0.0;  // of each direction by itself
+    constexpr int kRounds = 300;
+    for (int i = 0; i < kRounds; ++i) {
+      std::vector<PoseObservation> noisy = clean.observations;
+      for (PoseObservation& o : noisy) {
+        const double nu = noise * o.measured.sigma * source.normal();
+        o.measured.pixel += Eigen::Vector2d(nu, noise * o.measured.sigma * source.normal());
+        if (o.measured.has_disparity()) {
+          o.measured.disparity += nu - noise * o.measured.sigma * source.normal();
+        }
+      }
+      const PoseReport report = optimize_pose(test_camera(), clean.truth, noisy, options);
+      ASSERT_TRUE(report.success);
+      const auto covariance = pose_covariance(report.information, report.variance_factor);
+      ASSERT_TRUE(covariance);
+      EXPECT_EQ(*covariance, covariance->transpose());
+      const Vector6d error = (report.world_from_camera.inverse() * clean.truth).log();
+      sum += error.dot(covariance->ldlt().solve(error));
+      along += (error.array().square() / covariance->diagonal().array()).mean();
+    }
+    EXPECT_NEAR(sum / kRounds, 6.0, 0.9) << noise;
+    EXPECT_NEAR(along / kRounds, 1.0, 0.2) << noise;
+  }
+}
+
+TEST(PoseOptimizer, ThereIsNoCovarianceWhereADirectionIsOpen) {
+  EXPECT_FALSE(pose_covariance(Matrix6d::Zero(), 1.0));
+  Matrix6d open = Matrix6d::Identity();
+  open(2, 2) = 0.0;
+  EXPECT_FALSE(pose_covariance(open, 1.0));
+  EXPECT_FALSE(pose_covariance(Matrix6d::Identity(), 0.0));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(pose_covariance(nan * Matrix6d::Identity(), 1.0));
+  EXPECT_TRUE(pose_covariance(Matrix6d::Identity(), 2.0)->isApprox(2.0 * Matrix6d::Identity()));
+}
+
 TEST(PoseOptimizer, UsesDepthWhereThereIsOne) {
   // Three pixels alone leave depth weak; with disparity the pose of few points is exact.
   SampleSource source(6);
