@@ -50,6 +50,8 @@ void plan_join(const Map& map, const LoopVerification& loop, LoopPlan& plan) {
   plan.effect = LoopEffect::kJoin;
   plan.parent = query_is_older ? loop.query : loop.candidate;
   plan.child = query_is_older ? loop.candidate : loop.query;
+  plan.kept_component = std::min(query.component, candidate.component);
+  plan.joined_component = std::max(query.component, candidate.component);
   plan.parent_world_from_child_world = query_is_older ? candidate_world_from_query_world.inverse()
                                                       : candidate_world_from_query_world;
 }

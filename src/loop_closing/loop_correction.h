@@ -52,6 +52,7 @@ struct LoopPlan {
   std::vector<Sim3> world_from_camera;       ///< kBend: where they go, one per keyframe
   KeyframeId parent = kNoId, child = kNoId;  ///< kJoin, see Map::join_components
   SE3 parent_world_from_child_world;         ///< kJoin
+  std::uint32_t kept_component = 0, joined_component = 0;  ///< kJoin: the second is no more
 };
 
 /// Works out what an accepted `loop` does to the map, and whether the map and the loops closed

@@ -18,6 +18,11 @@ struct MapChanges {
   std::vector<PointId> added_points;
   std::vector<PointId> moved_points;
   std::vector<PointId> removed_points;
+
+  bool empty() const {
+    return added_keyframes.empty() && moved_keyframes.empty() && removed_keyframes.empty() &&
+           added_points.empty() && moved_points.empty() && removed_points.empty();
+  }
 };
 
 /// Takes down what is done to one kind of things with ids. Belongs to the thread of its map.

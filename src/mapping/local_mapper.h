@@ -12,24 +12,11 @@
 #include "map/local_map.h"
 #include "map/map.h"
 #include "mapping/mapping_options.h"
+#include "mapping/mapping_report.h"
 #include "optimization/may_go_on.h"
 #include "tracking/tracking_types.h"
 
 namespace dxslam {
-
-/// What one keyframe changed.
-struct MappingReport {
-  KeyframeId keyframe = kNoId;
-  int new_points = 0;
-  int triangulated_points = 0;
-  int fused_points = 0;
-  int culled_points = 0;
-  std::vector<KeyframeId> culled_keyframes;
-  int bundle_keyframes = 0;
-  int bundle_points = 0;
-  int bundle_observations = 0;
-  int outlier_observations = 0;
-};
 
 /// Calls what it is given, which changes the map; to know when that is.
 using MapChange = std::function<void(const std::function<void()>&)>;
