@@ -29,8 +29,10 @@
 #include "io/recordings/sequence_reader.h"
 
 // The system itself.
+#include "slam/event_reader.h"
 #include "slam/event_stream.h"
 #include "slam/observer.h"
+#include "slam/run_statistics.h"
 #include "slam/system.h"
 #include "slam/system_options.h"
 

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "map_files/map_file.h"
+#include "slam/event_reader.h"
 #include "slam/stage_times.h"
 #include "slam/system.h"
 
@@ -36,13 +37,17 @@ void start_once(const Camera& camera, const RgbdImage& image,
   SystemOptions options;
   options.mode = "localization";
   std::optional<double> first_pose;
-  System system(camera, std::move(extractor), options, [&](const TrackedFrame& frame) {
-    if (frame.state == TrackingState::kTracking && !first_pose) first_pose = whole.ms();
-  });
+  System system(camera, std::move(extractor), options);
+  EventReader reader(system.subscribe(1, EventKinds::of<FrameTracked>()),
+                     [&](const Message& message) {
+                       const TrackedFrame& frame = std::get<FrameTracked>(message.event).frame;
+                       if (frame.state == TrackingState::kTracking) first_pose = whole.ms();
+                     });
   system.load_map(std::move(stored.map), {});
   const double ready = whole.ms();
   system.process(image);
   system.finish();
+  reader.wait();
   if (!first_pose) throw InputError("the image to start with was not found in the map");
   note(times, "network made ready", network_ms);
   note(times, "map file read", loaded);

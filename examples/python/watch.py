@@ -28,7 +28,7 @@ def watch(events):
                     print("the map was corrected: poses given before are not right any more")
             case dxslam.TrackingLost(reason=reason, stamp=stamp):
                 print(f"lost at {stamp:.3f} s: {reason.name}")
-            case dxslam.LoopConsidered(closed=True):
+            case dxslam.LoopClosed() | dxslam.MapsJoined():
                 print(f"loop closed: keyframe {event.query} sees what {event.candidate} saw")
     print(f"{tracked} images tracked, {len(positions)} points, {events.lost} events missed")
 

@@ -64,6 +64,10 @@ inline Array<double, 4, 4> to_array(const RowMajor4& matrix) {
                                        {4, 4});
 }
 inline Array<double, 4, 4> to_array(const SE3& pose) { return to_array(RowMajor4(pose.matrix())); }
+inline Array<double, 6, 6> to_array(const Matrix6d& symmetric) {
+  return to_array<Array<double, 6, 6>>(
+      std::vector<double>(symmetric.data(), symmetric.data() + symmetric.size()), {6, 6});
+}
 inline Array<double, 3> to_array(const Eigen::Vector3d& v) {
   return to_array<Array<double, 3>>({v.x(), v.y(), v.z()}, {3});
 }

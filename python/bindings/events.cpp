@@ -6,6 +6,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <array>
@@ -43,6 +44,12 @@ std::optional<std::uint32_t> shown(const MessagePtr&, const std::uint32_t& id) {
 }
 std::string shown(const MessagePtr&, const std::string& text) { return text; }
 LossReason shown(const MessagePtr&, const LossReason& reason) { return reason; }
+SkipReason shown(const MessagePtr&, const SkipReason& reason) { return reason; }
+MappingReport shown(const MessagePtr&, const MappingReport& report) { return report; }
+std::optional<double> shown(const MessagePtr&, const std::optional<double>& value) { return value; }
+std::optional<Array<double, 6, 6>> shown(const MessagePtr&, const std::optional<Matrix6d>& matrix) {
+  return matrix ? std::optional(to_array(*matrix)) : std::nullopt;
+}
 TrackedFrame shown(const MessagePtr&, const TrackedFrame& frame) { return frame; }
 Array<double, 4, 4> shown(const MessagePtr&, const SE3& pose) { return to_array(pose); }
 Array<std::uint32_t, -1> shown(const MessagePtr&, const std::vector<std::uint32_t>& ids) {
@@ -79,27 +86,64 @@ class EventClass {
   nb::list names_;
 };
 
-// The table of all events.
-void bind_all_events(nb::module_& m) {
-  static_assert(std::variant_size_v<Event> == 8, "a new event wants a row here");
-  EventClass<RecordingBegun>(m, "RecordingBegun", "Images from now on are of another recording.")
+void bind_run_events(nb::module_& m) {
+  EventClass<RecordingBegun>(m, "RecordingBegun", "Images from now on are of this recording.")
       .field("recording", &RecordingBegun::number, "Which, from 0.");
+  EventClass<RecordingEnded>(m, "RecordingEnded", "All keyframes of a recording are in the map.")
+      .field("recording", &RecordingEnded::number, "Which, from 0.")
+      .field("keyframes", &RecordingEnded::keyframes, "Of the whole map now.")
+      .field("points", &RecordingEnded::points, "Of the whole map now.");
+  EventClass<MapSaved>(m, "MapSaved", "The map was written, whole, to a file.")
+      .field("path", &MapSaved::path, "The file.");
+  EventClass<RunFinished>(m, "RunFinished", "The run has ended well; nothing follows.")
+      .field("final_bundle_ms", &RunFinished::final_bundle_ms,
+             "The last adjustment of the whole map, milliseconds.");
+  EventClass<RunFailed>(m, "RunFailed", "The run has ended with an error; nothing follows.")
+      .field("what", &RunFailed::what, "One sentence.");
+}
+
+void bind_frame_events(nb::module_& m) {
   EventClass<FrameTracked>(m, "FrameTracked",
                            "Tracking has worked on a frame, found its pose or not.")
       .field("frame", &FrameTracked::frame, "What it found.")
+      .field("covariance", &FrameTracked::covariance,
+             "(6, 6) float64 of the pose, translation in metres before rotation in radians, along "
+             "the axes of the camera; errors of the map are not in it. None without a pose, and "
+             "for the frame that begins a map.")
       .field("extract_ms", &FrameTracked::extract_ms, "Milliseconds.")
       .field("track_ms", &FrameTracked::track_ms,
-             "Milliseconds, looking for its place in the map included.");
+             "Milliseconds, looking for its place in the map included.")
+      .field("relocalize_ms", &FrameTracked::relocalize_ms,
+             "Of it, looking for the place; None where it was not looked for.")
+      .field("request_dropped", &FrameTracked::request_dropped,
+             "It should have become a keyframe, but mapping was too far behind.");
+  EventClass<ImageSkipped>(m, "ImageSkipped", "An image that there is no FrameTracked of.")
+      .field("index", &ImageSkipped::index, "Of the image.")
+      .field("stamp", &ImageSkipped::stamp, "Seconds; None where it is not known.")
+      .field("reason", &ImageSkipped::reason, "Why.")
+      .field("what", &ImageSkipped::what, "One sentence, where there is more to say.");
   EventClass<TrackingLost>(m, "TrackingLost",
-                           "The first frame without a pose after one that had one.")
+                           "The first frame without a pose, of a recording or after one that had "
+                           "one.")
       .field("stamp", &TrackingLost::stamp, "Seconds.")
-      .field("reason", &TrackingLost::reason, "Why.");
+      .field("reason", &TrackingLost::reason, "Why.")
+      .field("keypoints", &TrackingLost::keypoints, "Of the frame.")
+      .field("matches", &TrackingLost::matches, "Known points found in it, at most.");
   EventClass<PlaceFound>(m, "PlaceFound", "A frame was found in the map by itself.")
       .field("stamp", &PlaceFound::stamp, "Seconds.")
       .field("component", &PlaceFound::component, "Of the map, in whose world the pose is.")
       .field("reference", &PlaceFound::reference, "Id of the keyframe that shares most points.")
       .field("world_from_camera", &PlaceFound::world_from_camera, "(4, 4) float64, metres.")
       .field("confidence", &PlaceFound::confidence, "Probability that it is right, 0 to 1.");
+}
+
+void bind_map_events(nb::module_& m) {
+  EventClass<KeyframeMapped>(m, "KeyframeMapped", "A keyframe was worked into the map.")
+      .field("frame", &KeyframeMapped::frame, "Index of its image.")
+      .field("report", &KeyframeMapped::report, "What that changed.")
+      .field("insert_ms", &KeyframeMapped::insert_ms, "Milliseconds.")
+      .field("refine_ms", &KeyframeMapped::refine_ms, "Milliseconds.")
+      .field("loop_closing_ms", &KeyframeMapped::loop_closing_ms, "Milliseconds.");
   EventClass<MapChanged>(m, "MapChanged",
                          "What one step of mapping did to the map. Together these give the whole "
                          "map; who comes late begins with System.whole_map().")
@@ -112,17 +156,48 @@ void bind_all_events(nb::module_& m) {
       .field("is_correction", &MapChanged::is_correction,
              "Poses given before are not what the map says now: a loop was closed, or maps were "
              "joined.");
-  EventClass<LoopConsidered>(m, "LoopConsidered", "A candidate for a loop was looked at.")
-      .field("query", &LoopConsidered::query, "Id of the new keyframe.")
-      .field("candidate", &LoopConsidered::candidate, "Id of the one that may see the same place.")
-      .field("closed", &LoopConsidered::closed, "Whether the map was corrected by it.")
-      .field("verdict", &LoopConsidered::verdict, "'accepted', or why not.")
-      .field("effect", &LoopConsidered::effect, "On the map: none, weld, bend or join.")
-      .field("largest_move", &LoopConsidered::largest_move, "Of a keyframe, metres.");
-  EventClass<MapSaved>(m, "MapSaved", "The map was written, whole, to a file.")
-      .field("path", &MapSaved::path, "The file.");
-  EventClass<RunFailed>(m, "RunFailed", "The run has ended with an error; nothing follows.")
-      .field("what", &RunFailed::what, "One sentence.");
+  EventClass<LoopFound>(m, "LoopFound", "A keyframe looks like one from before.")
+      .field("query", &LoopFound::query, "Id of the new keyframe.")
+      .field("candidate", &LoopFound::candidate, "Id of the one that may see the same place.")
+      .field("bow_score", &LoopFound::bow_score, "Of words, 0 to 1.")
+      .field("global_distance", &LoopFound::global_distance,
+             "Of global descriptors; None where there are none.");
+  EventClass<LoopRefused>(m, "LoopRefused", "It is not the same place, or cannot be.")
+      .field("query", &LoopRefused::query, "Id of the new keyframe.")
+      .field("candidate", &LoopRefused::candidate, "Id of the other.")
+      .field("reason", &LoopRefused::reason, "Why not.");
+  EventClass<LoopClosed>(m, "LoopClosed", "It is the same place; MapChanged follows.")
+      .field("query", &LoopClosed::query, "Id of the new keyframe.")
+      .field("candidate", &LoopClosed::candidate, "Id of the one that sees the same place.")
+      .field("largest_move", &LoopClosed::largest_move,
+             "Of a keyframe, metres; 0 where the map agreed already.");
+  EventClass<MapsJoined>(m, "MapsJoined", "It is, and two components are one from now on.")
+      .field("query", &MapsJoined::query, "Id of the new keyframe.")
+      .field("candidate", &MapsJoined::candidate, "Id of the one that sees the same place.")
+      .field("kept_component", &MapsJoined::kept_component, "What both are now.")
+      .field("joined_component", &MapsJoined::joined_component, "What is no more.");
+}
+
+// The tables of all events.
+void bind_all_events(nb::module_& m) {
+  static_assert(std::variant_size_v<Event> == 15, "a new event wants a row above");
+  bind_run_events(m);
+  bind_frame_events(m);
+  bind_map_events(m);
+}
+
+void bind_report(nb::module_& m) {
+  nb::enum_<SkipReason>(m, "SkipReason", "Why an image was not worked on.")
+      .value("UNREADABLE", SkipReason::kUnreadable, "It could not be read.")
+      .value("NOT_EXTRACTED", SkipReason::kNotExtracted, "Its features could not be extracted.")
+      .value("DROPPED", SkipReason::kDropped, "Tracking was too far behind.");
+  nb::class_<MappingReport>(m, "MappingReport", "What one keyframe changed. Immutable.")
+      .def_ro("keyframe", &MappingReport::keyframe, "Its id.")
+      .def_ro("new_points", &MappingReport::new_points, "Made from depth.")
+      .def_ro("triangulated_points", &MappingReport::triangulated_points, "Made without depth.")
+      .def_ro("fused_points", &MappingReport::fused_points, "That were others'.")
+      .def_ro("culled_points", &MappingReport::culled_points, "Removed.")
+      .def_ro("culled_keyframes", &MappingReport::culled_keyframes, "Ids of those removed.");
 }
 
 void bind_frame(nb::module_& m) {
@@ -131,7 +206,12 @@ void bind_frame(nb::module_& m) {
       .value("TRACKING", TrackingState::kTracking, "It has a pose.")
       .value("LOST", TrackingState::kLost, "It has no pose.");
   nb::enum_<LossReason>(m, "LossReason", "Why a frame has no pose.")
-      .value("NO_POSE", LossReason::kNoPose, "No pose fits what is seen.")
+      .value("FEW_KEYPOINTS", LossReason::kFewKeypoints, "It shows too few keypoints.")
+      .value("FEW_DEPTHS", LossReason::kFewDepths,
+             "Too few have a depth: no map can begin with it.")
+      .value("FEW_MATCHES", LossReason::kFewMatches, "Too few known points were found in it.")
+      .value("NO_AGREEMENT", LossReason::kNoAgreement, "Those found agree on no pose.")
+      .value("DISBELIEVED", LossReason::kDisbelieved, "A pose was found, but is too weak.")
       .value("PLACE_UNKNOWN", LossReason::kPlaceUnknown, "It was not found in the map.");
   nb::class_<TrackedFrame>(m, "TrackedFrame", "What tracking found for one image. Immutable.")
       .def_ro("index", &TrackedFrame::index, "Of the image, from 0.")
@@ -278,13 +358,14 @@ nb::object to_event(const MessagePtr& message) {
 void bind_events(nb::module_& m) {
   bind_frame(m);
   bind_tables(m);
+  bind_report(m);
   nb::class_<AnyEvent>(m, "Event", "Something that happened inside a System. Immutable.")
       .def_prop_ro(
           "number", [](const AnyEvent& event) { return event.message->number; },
-          "Place in the stream: rises by one per event, from 1.")
+          "Place in the stream: rises by one per event that somebody reads, from 1.")
       .def_prop_ro(
           "map_version", [](const AnyEvent& event) { return event.message->map_version; },
-          "Of the map; rises with each MapChanged.")
+          "Of the map; rises when it has changed.")
       .def("__repr__", [](const nb::handle self) {
         std::string text = nb::cast<std::string>(self.type().attr("__name__"));
         text += fmt::format("(number={}", nb::cast<std::uint64_t>(self.attr("number")));

@@ -52,6 +52,9 @@ PySystem::PySystem(const Camera& camera, const std::optional<SystemOptions>& opt
     return std::make_shared<System>(camera, std::make_unique<SharedExtractor>(features), settled,
                                     told);
   });
+  reader_ = std::make_unique<EventReader>(
+      system_->subscribe(Subscription::kUnbounded, RunStatistics::kinds()),
+      [this](const Message& message) { statistics_.add(message.event); });
   end_at_exit(this, [this] {
     const std::unique_lock lock(turn_, std::try_to_lock);
     try {
@@ -65,6 +68,7 @@ PySystem::~PySystem() {
   forget_at_exit(this);
   {
     const nb::gil_scoped_release release;
+    reader_.reset();
     system_.reset();
   }
   release_arrays();
@@ -144,7 +148,13 @@ void PySystem::finish(bool adjust) {
     const std::unique_lock lock(turn_, std::try_to_lock);
     require(lock.owns_lock(), "images of a System must come from one thread at a time");
     finished_ = true;  // even where it throws, all threads have ended
-    system_->finish([&] { return goes_on.load(); });
+    try {
+      system_->finish([&] { return goes_on.load(); });
+    } catch (...) {
+      reader_->wait();
+      throw;
+    }
+    reader_->wait();  // all is told
   });
   std::optional<nb::python_error> interrupted;
   while (true) {

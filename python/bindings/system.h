@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +16,8 @@
 #include "bindings/extractor.h"
 #include "bindings/images.h"
 #include "bindings/map.h"
+#include "slam/event_reader.h"
+#include "slam/run_statistics.h"
 #include "slam/system.h"
 
 namespace dxslam::python {
@@ -68,6 +71,7 @@ class PySystem {
   const SystemOptions& options() const { return options_; }
   const SharedExtractor& extractor() const { return *extractor_; }
   std::vector<std::string> notes() const;
+  std::map<std::string, StageSummary> times() const { return statistics_.stages(); }
   FrameCallback* callback() { return callback_.get(); }
 
  private:
@@ -82,6 +86,8 @@ class PySystem {
   std::optional<SharedExtractor> extractor_;
   std::shared_ptr<FrameCallback> callback_;
   std::shared_ptr<System> system_;
+  RunStatistics statistics_;
+  std::unique_ptr<EventReader> reader_;  // for these
   std::vector<std::string> thumbnails_;  // of the map that it goes on with
   std::mutex turn_;
   std::int64_t next_index_ = 0;

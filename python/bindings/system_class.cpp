@@ -171,12 +171,12 @@ void bind_results(nb::class_<PySystem>& system) {
            "The map, which is shared, not copied. After finish(). Raises ContractError where a "
            "change of it has failed halfway.")
       .def(
-          "times", [](const PySystem& self) { return self.system().times().summaries(); },
+          "times", [](const PySystem& self) { return self.times(); },
           "Milliseconds of each stage so far, by name: extract, track, frame, and so on.")
       .def(
           "callback_failures",
           [](const PySystem& self) {
-            const CallbackFailures& failures = self.finished().callback_failures();
+            const CallbackFailures failures = self.finished().callback_failures();
             return std::pair(failures.count, failures.first);
           },
           "How often on_frame has raised something, and the text of the first. It ends nothing. "

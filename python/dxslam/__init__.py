@@ -23,11 +23,12 @@ except ImportError as _error:
 from . import evaluate
 from ._dxslam import (
     AteReport, Camera, ComponentSummary, ContractError, Error, ErrorStatistics, Event, Extractor,
-    Features, FrameTracked, Frames, Image, InputError, Keyframe, KeyframePoses, LoopConsidered,
-    LossReason, Map, MapChanged, MapSaved, PlaceFound, PointPositions, RecordingBegun,
-    Relocalization, RpeReport, RunFailed, Source, SourceIterator, StageSummary, Subscription,
-    System, TrackedFrame, TrackingLost, TrackingState, Trajectory, __version__,
-    available_extractors, data_directory, match, open_source, source_formats)
+    Features, Frames, FrameTracked, Image, ImageSkipped, InputError, Keyframe, KeyframeMapped,
+    KeyframePoses, LoopClosed, LoopFound, LoopRefused, LossReason, Map, MapChanged, MappingReport,
+    MapSaved, MapsJoined, PlaceFound, PointPositions, RecordingBegun, RecordingEnded, Relocalization,
+    RpeReport, RunFailed, RunFinished, SkipReason, Source, SourceIterator, StageSummary, Subscription,
+    System, TrackedFrame, TrackingLost, TrackingState, Trajectory, __version__, available_extractors,
+    data_directory, match, open_source, source_formats)
 from .options import Options
 
 __all__ = [name for name in globals() if not name.startswith("_") and name != "options"]

@@ -218,6 +218,13 @@ class Events(unittest.TestCase):
         self.assertRegex(repr(tracked[0]), r"^FrameTracked\(number=\d+, frame=TrackedFrame\(index=0,")
         with self.assertRaises(AttributeError):
             tracked[0].extract_ms = 1.0
+        self.assertIsNone(tracked[0].covariance)  # the origin by definition
+        self.assertEqual(tracked[1].covariance.shape, (6, 6))
+        self.assertTrue((np.linalg.eigvalsh(tracked[1].covariance) > 0).all())
+        mapped = [e.report.keyframe for e in events if isinstance(e, dxslam.KeyframeMapped)]
+        self.assertEqual(mapped, sorted(set(mapped)))
+        self.assertIsInstance(events[0], dxslam.RecordingBegun)
+        self.assertIsInstance(events[-1], dxslam.RunFinished)
 
     def test_every_event_has_a_class(self):
         classes = [value for value in vars(dxslam).values()

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <optional>
+#include <utility>
 
 #include "apps/console.h"
 
@@ -30,28 +32,33 @@ std::optional<std::string> says_other_camera(const Rig& rig, const Camera& camer
       c.width, c.height, c.fx, c.fy, camera.width, camera.height, camera.fx, camera.fy);
 }
 
-bool AutoSaver::is_ready() {
-  return !under_way_.valid() ||
-         under_way_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+void AutoSaver::note(const KeyframeMapped&) {
+  if (++mapped_ % keyframes_ == 0 && !is_busy()) save();
 }
 
-void AutoSaver::save(const Map& map, const std::vector<LoopEdge>& loops,
-                     const std::vector<std::string>& thumbnails) {
+bool AutoSaver::is_busy() const {
+  return under_way_.valid() &&
+         under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+void AutoSaver::save() {
   finish();
-  attempt([&] {
-    under_way_ = std::async(
-        std::launch::async,
-        [path = path_, snapshot = take_snapshot(header_, map, stored_loops(map, loops),
-                                                thumbnails)] { save_map(path, snapshot); });
+  attempt([this] {
+    std::optional<MapSnapshot> snapshot;
+    system_.read_map([&](const Map& map, const std::vector<LoopEdge>& loops) {
+      snapshot = take_snapshot(header_, map, stored_loops(map, loops), pictures_(map));
+    });
+    if (!snapshot) return;  // an error is on its way
+    under_way_ = std::async(std::launch::async, [this, kept = std::move(*snapshot)] {
+      save_map(path_, kept);
+      system_.events().publish(MapSaved{path_});
+    });
   });
 }
 
 void AutoSaver::finish() {
   if (!under_way_.valid()) return;
-  attempt([this] {
-    under_way_.get();
-    on_saved_();
-  });
+  attempt([this] { under_way_.get(); });
 }
 
 void AutoSaver::attempt(const std::function<void()>& step) {

@@ -2,13 +2,16 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "slam/observer.h"
 #include "slam/stored_system.h"
+#include "slam/system.h"
 
 namespace dxslam::apps {
 
@@ -16,27 +19,39 @@ namespace dxslam::apps {
 /// then nothing is found. Nothing where one is, within a few per cent.
 std::optional<std::string> says_other_camera(const Rig& rig, const Camera& camera);
 
-/// Saves a map in a thread of its own, so that mapping need not wait for the disk. A save that
-/// fails is said once on stderr; the next one tries again. One thread at a time; nothing is thrown.
+/// Saves the map of a system after every so many keyframes: a reader of its KeyframeMapped. The
+/// file is written in a thread of its own, so that nobody waits for the disk. A save that fails is
+/// said once on stderr; the next one tries again. One that succeeds is told as MapSaved. One thread
+/// at a time; nothing is thrown.
 class AutoSaver {
  public:
-  /// `on_saved` is called after a save, by the thread that calls save() or finish().
-  AutoSaver(std::string path, MapHeader header, std::function<void()> on_saved)
-      : path_(std::move(path)), header_(header), on_saved_(std::move(on_saved)) {}
-  /// False while a save is under way: the next one has to be left out.
-  bool is_ready();
-  /// Copies the map and returns. Only when it is ready.
-  void save(const Map& map, const std::vector<LoopEdge>& loops,
-            const std::vector<std::string>& thumbnails);
+  /// Pictures of the map's keyframes, as take_snapshot() wants them.
+  using Pictures = std::function<std::vector<std::string>(const Map&)>;
+
+  /// `system` must outlive this, or the call of finish().
+  AutoSaver(System& system, std::string path, int keyframes, MapHeader header, Pictures pictures)
+      : system_(system),
+        path_(std::move(path)),
+        keyframes_(keyframes),
+        header_(std::move(header)),
+        pictures_(std::move(pictures)) {}
+
+  /// A keyframe came into the map.
+  void note(const KeyframeMapped& mapped);
   /// Waits for the save under way.
   void finish();
 
  private:
+  bool is_busy() const;
+  void save();
   void attempt(const std::function<void()>& step);
 
-  std::string path_;
-  MapHeader header_;
-  std::function<void()> on_saved_;
+  System& system_;
+  const std::string path_;
+  const int keyframes_;
+  const MapHeader header_;
+  const Pictures pictures_;
+  std::int64_t mapped_ = 0;
   bool warned_ = false;
   std::future<void> under_way_;
 };

@@ -59,9 +59,9 @@ Json lost_intervals(const System& system) {
   return intervals;
 }
 
-Json stage_table(const System& system) {
+Json stage_table(const RunStatistics& statistics) {
   Json stages = Json::object();
-  for (const auto& [stage, s] : system.times().summaries()) {
+  for (const auto& [stage, s] : statistics.stages()) {
     stages[stage] = {{"count", s.count},
                      {"median_ms", rounded(s.median_ms, 1e-3)},
                      {"p95_ms", rounded(s.p95_ms, 1e-3)},
@@ -79,8 +79,7 @@ Json skipped_frames(const ImageOrigin& sequence, const RunRecord& record) {
   return skipped;
 }
 
-Json mapping_table(const System& system) {
-  const MappingTotals& m = system.mapping_totals();
+Json mapping_table(const MappingTotals& m) {
   return {{"keyframes_made", m.keyframes},
           {"keyframes_culled", m.culled_keyframes},
           {"points_from_depth", m.new_points},
@@ -133,7 +132,8 @@ Json loop_table(const System& system) {
 }
 
 // What the system tells. The frames may be in a file, which may fail.
-void add_system(OutputSteps& steps, Json& summary, const System& system) {
+void add_system(OutputSteps& steps, Json& summary, const System& system,
+                const RunStatistics& statistics) {
   summary["features"] = system.extractor().name();
   summary["lost_intervals"] = nullptr;
   steps.run([&] { summary["lost_intervals"] = lost_intervals(system); });
@@ -141,13 +141,13 @@ void add_system(OutputSteps& steps, Json& summary, const System& system) {
     summary["keyframes"] = system.map().keyframe_count();
     summary["points"] = system.map().point_count();
   }
-  summary["mapping"] = mapping_table(system);
+  summary["mapping"] = mapping_table(statistics.mapping());
   summary["components"] = nullptr;
   if (system.map_is_whole()) {
     steps.run([&] { summary["components"] = components_table(system); });
   }
   summary["loops"] = loop_table(system);
-  summary["stages"] = stage_table(system);
+  summary["stages"] = stage_table(statistics);
 }
 
 void add_configuration(Json& summary, const RunSettings& settings, const SystemOptions& options) {
@@ -192,11 +192,11 @@ Json summarise(OutputSteps& steps, const Session& session, const RunRecord& reco
   summary["dropped_frames"] = record.frames_dropped;
   summary["interrupted"] = record.interrupted;
   summary["error"] = record.error ? Json(*record.error) : Json(nullptr);
-  summary["callback_failures"] = record.callback_failures.count;
+  summary["callback_failures"] = record.reader_failures.count;
   summary["low_light_gain"] = record.low_light ? Json(*record.low_light) : Json(nullptr);
   summary["realtime"] = record.realtime;
   if (session.system() != nullptr) {
-    add_system(steps, summary, *session.system());
+    add_system(steps, summary, *session.system(), session.statistics());
     summary["notes"] = feature_notes(session.options(), session.system()->extractor(),
                                      !session.settings().map_in.empty());
   }

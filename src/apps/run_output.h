@@ -31,7 +31,7 @@ struct RunRecord {
   std::optional<TruthReport> truth;
   std::optional<std::string> why_no_pose;
   std::optional<std::string> error;  ///< what ended the images early
-  CallbackFailures callback_failures;
+  CallbackFailures reader_failures;
 };
 
 /// Writes trajectory.txt, keyframes.txt, map.ply, trajectory.svg and summary.json into the folder

@@ -26,7 +26,6 @@ namespace {
 
 constexpr double kMinTrackedShare = 0.1;  // below it the run counts as failed
 constexpr std::chrono::milliseconds kSlice{20};
-constexpr int kThumbnailsTidied = 100;  // keyframes between two times that old ones are let go
 
 // Everything that `run` and `lifelong` write into --out: the one replaces what the other wrote.
 ResultFiles result_files() {
@@ -97,7 +96,7 @@ void Session::claim_targets() {
   unsaved_.emplace();
 }
 
-std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallback on_frame) {
+std::unique_ptr<System> Session::start(const Camera& camera, EventReader::Function receive) {
   Loading<std::unique_ptr<FeatureExtractor>> network(
       [features = options_.features, extractor = options_.extractor] {
         return make_extractor(features, extractor);
@@ -112,15 +111,10 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
   if (map_in) stored.emplace(map_in->get());
   if (stored) other_camera_ = says_other_camera(stored->map.rig(), camera);
   if (other_camera_) warn("{}: {}", settings_.map_in, *other_camera_);
-  const auto note = [this, on_frame = std::move(on_frame)](const TrackedFrame& frame) {
-    on_frame(frame);  // first: it counts the frames, and what is below may throw
-    first_pose_.note(frame);
-    thumbnails_->note(frame);
-  };
   // It loads the vocabulary.
   Loading<std::unique_ptr<System>> made(
-      [camera, extractor = network.get(), options = options_, note]() mutable {
-        return std::make_unique<System>(camera, std::move(extractor), options, note);
+      [camera, extractor = network.get(), options = options_]() mutable {
+        return std::make_unique<System>(camera, std::move(extractor), options);
       });
   if (!made.wait()) return nullptr;
   std::unique_ptr<System> system = made.get();
@@ -131,19 +125,29 @@ std::unique_ptr<System> Session::start(const Camera& camera, System::FrameCallba
   }
   tell_notes(feature_notes(options_, system->extractor(), stored.has_value()));
   thumbnails_.emplace(settings_.thumbnails, std::move(pictures));
-  saver_.emplace(settings_.map_out, header_,
-                 [this] { system_->events().publish(MapSaved{settings_.map_out}); });
-  if (settings_.autosave > 0 || settings_.thumbnails) {
-    const int every = settings_.autosave > 0 ? settings_.autosave : kThumbnailsTidied;
-    system->set_autosave(every, [this](const Map& map, const std::vector<LoopEdge>& loops) {
-      thumbnails_->forget_culled(map);
-      if (settings_.autosave > 0 && saver_->is_ready()) {
-        saver_->save(map, loops, thumbnails_->of(map));
-      }
-    });
+  if (settings_.autosave > 0) {
+    saver_.emplace(*system, settings_.map_out, settings_.autosave, header_,
+                   [this](const Map& map) { return thumbnails_->of(map); });
   }
+  reader_.emplace(system->subscribe(Subscription::kUnbounded, kReceived),
+                  [this, receive = std::move(receive)](const Message& message) {
+                    statistics_.add(message.event);
+                    receive(message);
+                    note(message.event);
+                  });
   system_ = system.get();
   return system;
+}
+
+void Session::note(const Event& event) {
+  if (const auto* tracked = std::get_if<FrameTracked>(&event)) {
+    first_pose_.note(tracked->frame);
+    thumbnails_->note(tracked->frame);
+  }
+  if (const auto* mapped = std::get_if<KeyframeMapped>(&event)) {
+    thumbnails_->note(*mapped);
+    if (saver_) saver_->note(*mapped);
+  }
 }
 
 void Session::run(const std::function<void()>& feed) {
@@ -157,30 +161,49 @@ void Session::run(const std::function<void()>& feed) {
       error_.keep_current();
     }
   }
+  reader_->wait();  // finish() has ended what it reads
+  if (saver_) saver_->finish();
 }
 
 std::optional<RgbdImage> Session::next(ImageSource& source, std::vector<SkippedFrame>& failed) {
   while (!stop_requested()) {
+    const std::size_t told = source.skipped().size();
+    std::optional<SkippedFrame> failure;
+    std::optional<RgbdImage> image;
     try {
-      std::optional<RgbdImage> image = source.next();
-      return stop_requested() ? std::nullopt : std::move(image);
+      image = source.next();
     } catch (const InputError&) {
       throw;
     } catch (const std::exception& e) {
-      failed.push_back(skipped_for(source.index(), e));
+      failure = skipped_for(source.index(), e);
     }
+    const std::vector<SkippedFrame>& skipped = source.skipped();
+    for (std::size_t i = told; i < skipped.size(); ++i) tell_unreadable(skipped[i]);
+    if (!failure) return stop_requested() ? std::nullopt : std::move(image);
+    tell_unreadable(*failure);
+    failed.push_back(std::move(*failure));
   }
   return std::nullopt;
 }
 
 bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,
                       const std::function<void()>& work) {
+  given_ = false;
   const auto failure = attempt_image(index, work);
-  if (failure && !system_->has_failed()) failed.push_back(*failure);
+  if (failure && !system_->has_failed()) {
+    failed.push_back(*failure);
+    if (!given_) tell_unreadable(*failure);
+  }
   return !stop_requested() && !system_->has_failed();
 }
 
+void Session::tell_unreadable(const SkippedFrame& skipped) {
+  system_->events().publish(ImageSkipped{static_cast<std::int64_t>(skipped.index), std::nullopt,
+                                         SkipReason::kUnreadable, skipped.reason});
+}
+
 bool Session::process(const RgbdImage& image, bool live) {
+  given_ = true;  // what becomes of it, the system tells
   first_pose_.offer(image, max_depth_);
   thumbnails_->offer(image);
   if (live) return system_->try_process(image);
@@ -188,11 +211,13 @@ bool Session::process(const RgbdImage& image, bool live) {
   return true;
 }
 
-CallbackFailures Session::tell_callback_failures() const {
-  if (system_ == nullptr || system_->callback_failures().count == 0) return {};
-  const CallbackFailures& failures = system_->callback_failures();
-  warn("{} times what goes with a frame or an autosave failed; the first: {}", failures.count,
-       failures.first);
+CallbackFailures Session::tell_reader_failures() const {
+  if (!reader_) return {};
+  const CallbackFailures failures = reader_->failures();
+  if (failures.count > 0) {
+    warn("{} times what goes with a frame or an autosave failed; the first: {}", failures.count,
+         failures.first);
+  }
   return failures;
 }
 
@@ -216,7 +241,6 @@ void Session::save_map(OutputSteps& steps) {
     return;
   }
   map_is_saved_ = steps.run([&] {
-    saver_->finish();
     save_system_map(settings_.map_out, header_, system_->map(), system_->closed_loops(),
                     thumbnails_->of(system_->map()));
   });

@@ -16,7 +16,9 @@
 #include "apps/thumbnails.h"
 #include "core/image_source.h"
 #include "io/primitives/result_folder.h"
+#include "slam/event_reader.h"
 #include "slam/first_error.h"
+#include "slam/run_statistics.h"
 #include "slam/system.h"
 
 namespace dxslam::apps {
@@ -38,32 +40,37 @@ class Session {
   /// The folder of results; null where none was asked for.
   ResultFolder* folder() { return folder_ ? &*folder_ : nullptr; }
 
-  /// Loads network and map, and returns the system, which this uses from then on: what `on_frame`
+  /// Loads network and map, and returns the system, which this uses from then on: what `receive`
   /// uses must outlive it, and so must this. Null if a stop was requested before all was loaded.
-  /// Throws InputError for what cannot be used.
-  std::unique_ptr<System> start(const Camera& camera, System::FrameCallback on_frame);
+  /// `receive` gets the messages of the system, in a thread of their own, all of those of
+  /// kReceived. Throws InputError for what cannot be used.
+  std::unique_ptr<System> start(const Camera& camera, EventReader::Function receive);
+  /// Small ones alone, for none may be lost.
+  static constexpr EventKinds kReceived = RunStatistics::kinds() | EventKinds::of<RecordingBegun>();
   /// Null where there is none.
   System* system() { return system_; }
   const System* system() const { return system_; }
 
-  /// Calls `feed`, which gives the images, and waits until all are worked off. What goes wrong
-  /// inside ends them, but costs no output: see rethrow_error(). Does nothing without a system.
+  /// Calls `feed`, which gives the images, and waits until all are worked off and told. What goes
+  /// wrong inside ends them, but costs no output: see rethrow_error(). Does nothing without a
+  /// system.
   void run(const std::function<void()>& feed);
   /// In `feed`, the next image; nothing at the end and after a stop. What cannot be read costs this
   /// image alone, and is added to `failed`; that no image can come any more is thrown.
-  static std::optional<RgbdImage> next(ImageSource& source, std::vector<SkippedFrame>& failed);
+  std::optional<RgbdImage> next(ImageSource& source, std::vector<SkippedFrame>& failed);
   /// In `feed`, once per image: calls `work`, which processes it. What that throws costs this image
   /// alone, and is added to `failed`. Returns whether further images are wanted: not after a stop,
   /// nor once tracking or mapping has failed.
   bool attempt(std::size_t index, std::vector<SkippedFrame>& failed,
                const std::function<void()>& work);
-  /// Hands an image to the system; false if it was dropped (`live` only).
+  /// In `work`: hands an image to the system; false if it was dropped (`live` only).
   bool process(const RgbdImage& image, bool live);
 
   /// Throws what ended the images early. After run(), as all below.
   void rethrow_error() const { error_.rethrow(); }
-  /// What the calls that should not fail have failed with meanwhile; says it on stderr.
-  CallbackFailures tell_callback_failures() const;
+  /// What those who received messages have failed with; says it on stderr.
+  CallbackFailures tell_reader_failures() const;
+  const RunStatistics& statistics() const { return statistics_; }
   /// Whether the map can be read: no change of it has failed halfway.
   bool has_whole_map() const { return system_ != nullptr && system_->map_is_whole(); }
   /// Why there is no pose at all; nothing if there is one.
@@ -77,6 +84,9 @@ class Session {
   void all_is_saved() { unsaved_.reset(); }
 
  private:
+  void note(const Event& event);
+  void tell_unreadable(const SkippedFrame& skipped);
+
   RunSettings settings_;
   SystemOptions options_;
   std::optional<ResultFolder> folder_;
@@ -89,6 +99,9 @@ class Session {
   double max_depth_ = 0.0;                   // of the camera, metres
   bool map_is_saved_ = false;
   System* system_ = nullptr;
+  bool given_ = false;  // the image in work, to the system
+  RunStatistics statistics_;
+  std::optional<EventReader> reader_;  // the last of those that its thread uses
   FirstError error_;
   std::optional<Unsaved> unsaved_;
 };

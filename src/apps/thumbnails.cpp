@@ -3,8 +3,9 @@
 #include "apps/thumbnails.h"
 
 #include <algorithm>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
-#include <set>
+#include <utility>
 
 #include "io/primitives/image_file.h"
 
@@ -38,8 +39,18 @@ void Thumbnails::note(const TrackedFrame& frame) {
   // Those before it were dropped.
   while (!waiting_.empty() && waiting_.front().index < frame.index) waiting_.pop_front();
   if (waiting_.empty() || waiting_.front().index != frame.index) return;
-  if (frame.is_keyframe) taken_[frame.index] = encode_jpeg(waiting_.front().grey, kQuality);
+  if (frame.is_keyframe) on_the_way_[frame.index] = encode_jpeg(waiting_.front().grey, kQuality);
   waiting_.pop_front();
+}
+
+void Thumbnails::note(const KeyframeMapped& mapped) {
+  const std::lock_guard lock(mutex_);
+  const auto made = on_the_way_.find(mapped.frame);
+  if (made != on_the_way_.end()) {
+    in_map_[mapped.report.keyframe] = std::move(made->second);
+    on_the_way_.erase(on_the_way_.begin(), std::next(made));  // those before it never came
+  }
+  for (const KeyframeId id : mapped.report.culled_keyframes) in_map_.erase(id);
 }
 
 std::vector<std::string> Thumbnails::of(const Map& map) const {
@@ -47,26 +58,11 @@ std::vector<std::string> Thumbnails::of(const Map& map) const {
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   std::vector<std::string> all(ids.empty() ? 0 : ids.back() + std::size_t{1});
   std::copy_n(stored_.begin(), std::min(stored_.size(), all.size()), all.begin());
-  for (const KeyframeId id : ids) {
-    if (id < stored_.size()) continue;
-    const auto found = taken_.find(map.keyframe(id).frame->index);
-    if (found != taken_.end()) all[id] = found->second;
+  for (const auto& [id, picture] : in_map_) {
+    if (id < all.size()) all[id] = picture;
   }
   const bool none = std::all_of(all.begin(), all.end(), [](const auto& t) { return t.empty(); });
   return none ? std::vector<std::string>() : all;
-}
-
-void Thumbnails::forget_culled(const Map& map) {
-  const std::lock_guard lock(mutex_);
-  std::set<std::int64_t> alive;
-  for (const KeyframeId id : map.keyframe_ids()) {
-    if (id >= stored_.size()) alive.insert(map.keyframe(id).frame->index);
-  }
-  if (alive.empty()) return;
-  const std::int64_t newest = *alive.rbegin();  // those after it are still on their way to the map
-  std::erase_if(taken_, [&](const auto& taken) {
-    return taken.first < newest && alive.count(taken.first) == 0;
-  });
 }
 
 }  // namespace dxslam::apps

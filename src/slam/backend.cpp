@@ -106,6 +106,9 @@ void Backend::record(const LoopReport& report, const std::vector<LoopCandidate>&
     record.confirmations = attempt.verification.confirmations;
     record.contradiction = attempt.plan.contradiction;
     if (record.accepted) record.largest_move = report.change.largest_move;
+    if (attempt.plan.effect == LoopEffect::kJoin) {
+      record.joined = {attempt.plan.kept_component, attempt.plan.joined_component};
+    }
     loop_log_.add(std::move(record));
   }
 }

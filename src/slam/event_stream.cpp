@@ -35,6 +35,7 @@ void Subscription::put(const MessagePtr& message) {
   MessagePtr oldest;  // goes without the lock: it may be large
   {
     const std::lock_guard lock(mutex_);
+    if (ended_) return;
     if (messages_.size() == capacity_) {
       oldest = std::move(messages_.front());
       messages_.pop_front();
@@ -53,18 +54,18 @@ void Subscription::end() {
   changed_.notify_all();
 }
 
-SubscriptionPtr EventStream::subscribe(std::size_t capacity) {
+SubscriptionPtr EventStream::subscribe(std::size_t capacity, EventKinds kinds) {
   require(capacity > 0, "a subscription needs room for a message");
-  auto subscription = std::make_shared<Subscription>(capacity);
+  auto subscription = std::make_shared<Subscription>(capacity, kinds);
   const std::lock_guard lock(mutex_);
   if (ended_) subscription->end();
   subscriptions_.push_back(subscription);
-  ++readers_;
+  wanted_ = wanted_.load() | kinds;
   return subscription;
 }
 
 void EventStream::publish(Event event) {
-  if (!has_readers()) return;
+  if (!wanted_.load(std::memory_order_relaxed).has(event)) return;
   const std::lock_guard lock(mutex_);
   send(std::move(event));
 }
@@ -72,22 +73,32 @@ void EventStream::publish(Event event) {
 void EventStream::publish_change(MapChanged change) {
   const std::lock_guard lock(mutex_);
   ++map_version_;
-  if (has_readers()) send(std::move(change));
+  if (has_readers_of<MapChanged>()) send(std::move(change));
 }
 
 void EventStream::send(Event event) {
   if (ended_) return;
   const auto message =
       std::make_shared<const Message>(Message{++number_, map_version_.load(), std::move(event)});
+  bool some_are_gone = false;
+  for (const std::weak_ptr<Subscription>& weak : subscriptions_) {
+    const SubscriptionPtr subscription = weak.lock();
+    some_are_gone = some_are_gone || !subscription;
+    if (subscription && subscription->kinds_.has(message->event)) subscription->put(message);
+  }
+  if (some_are_gone) forget_gone();
+}
+
+void EventStream::forget_gone() {
+  EventKinds wanted = EventKinds::none();
   const auto is_gone = [&](const std::weak_ptr<Subscription>& weak) {
     const SubscriptionPtr subscription = weak.lock();
-    if (!subscription) return true;
-    subscription->put(message);
-    return false;
+    if (subscription) wanted = wanted | subscription->kinds_;
+    return !subscription;
   };
-  const auto gone = std::remove_if(subscriptions_.begin(), subscriptions_.end(), is_gone);
-  readers_ -= static_cast<int>(subscriptions_.end() - gone);
-  subscriptions_.erase(gone, subscriptions_.end());
+  subscriptions_.erase(std::remove_if(subscriptions_.begin(), subscriptions_.end(), is_gone),
+                       subscriptions_.end());
+  wanted_ = wanted;
 }
 
 void EventStream::end() {

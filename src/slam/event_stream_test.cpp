@@ -56,6 +56,51 @@ TEST(EventStream, ASlowReaderLosesTheOldestAndIsTold) {
   EXPECT_EQ(recording_of(quick->try_next()), 0);
 }
 
+TEST(EventStream, GivesAReaderTheKindsThatItAskedFor) {
+  EventStream stream;
+  const auto kinds = EventKinds::of<RecordingBegun, MapSaved>();
+  SubscriptionPtr some = stream.subscribe(2, kinds);
+  EXPECT_TRUE(stream.has_readers_of<MapSaved>());
+  EXPECT_FALSE(stream.has_readers_of<MapChanged>());
+  const SubscriptionPtr others = stream.subscribe(2, EventKinds::of<MapChanged>());
+  EXPECT_TRUE(stream.has_readers_of<MapChanged>());
+  for (int i = 0; i < 3; ++i) stream.publish_change({});
+  stream.publish(MapSaved{"a"});
+  stream.publish(RunFailed{"b"});
+  EXPECT_EQ(some->lost(), 0U);
+  EXPECT_EQ(others->lost(), 1U);
+  const MessagePtr first = some->try_next();
+  EXPECT_EQ(std::get<MapSaved>(first->event).path, "a");
+  EXPECT_EQ(first->map_version, 3U);
+  EXPECT_EQ(some->try_next(), nullptr);
+  some.reset();
+  stream.publish_change({});
+  EXPECT_FALSE(stream.has_readers_of<MapSaved>());
+  EXPECT_TRUE(stream.has_readers_of<MapChanged>());
+}
+
+TEST(EventStream, AnUnboundedQueueLosesNothing) {
+  EventStream stream;
+  const SubscriptionPtr reader = stream.subscribe(Subscription::kUnbounded);
+  for (int i = 0; i < 5000; ++i) stream.publish(RecordingBegun{i});
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(recording_of(reader->try_next()), i);
+  EXPECT_EQ(reader->lost(), 0U);
+}
+
+TEST(EventStream, AReaderEndsForItself) {
+  EventStream stream;
+  const SubscriptionPtr reader = stream.subscribe();
+  const SubscriptionPtr other = stream.subscribe();
+  stream.publish(RecordingBegun{0});
+  reader->end();
+  stream.publish(RecordingBegun{1});
+  EXPECT_EQ(recording_of(reader->try_next()), 0);
+  EXPECT_TRUE(reader->has_ended());
+  EXPECT_EQ(recording_of(other->try_next()), 0);
+  EXPECT_EQ(recording_of(other->try_next()), 1);
+  EXPECT_FALSE(other->has_ended());
+}
+
 TEST(EventStream, WaitsAsLongAsOneLikes) {
   EventStream stream;
   const SubscriptionPtr reader = stream.subscribe();
@@ -66,12 +111,12 @@ TEST(EventStream, WaitsAsLongAsOneLikes) {
 
 TEST(EventStream, ForgetsReadersThatAreGone) {
   EventStream stream;
-  EXPECT_FALSE(stream.has_readers());
+  EXPECT_FALSE(stream.has_readers_of<RecordingBegun>());
   SubscriptionPtr reader = stream.subscribe();
-  EXPECT_TRUE(stream.has_readers());
+  EXPECT_TRUE(stream.has_readers_of<RecordingBegun>());
   reader.reset();
   stream.publish(RecordingBegun{});
-  EXPECT_FALSE(stream.has_readers());
+  EXPECT_FALSE(stream.has_readers_of<RecordingBegun>());
   EXPECT_THROW(stream.subscribe(0), ContractError);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "map/map_types.h"
@@ -26,6 +27,10 @@ struct LoopRecord {
   int confirmations = 0;       ///< neighbours of the query that see the place
   double contradiction = 0.0;  ///< metres between the loop and the map before
   double largest_move = 0.0;   ///< metres, of a keyframe
+  struct Joined {
+    std::uint32_t kept = 0, gone = 0;
+  };
+  std::optional<Joined> joined;  ///< components that became one
 };
 
 /// What became of the candidates for loops: counts of all, and the records of the last ones. Where

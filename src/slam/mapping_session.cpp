@@ -3,7 +3,10 @@
 #include "slam/mapping_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "slam/stage_times.h"
 
 namespace dxslam {
 namespace {
@@ -31,33 +34,48 @@ std::vector<PointPosition> positions_of(const Map& map, const std::vector<PointI
 }  // namespace
 
 void MappingSession::map_keyframe(const KeyframeRequest& request, Epoch epoch) {
-  backend_.record_changes(events_.has_readers());
+  backend_.record_changes(events_.has_readers_of<MapChanged>());
+  KeyframeMapped mapped;
+  mapped.frame = request.frame->index;
   const Stopwatch insert_watch;
   snapshots_.publish(epoch, backend_.insert(request));
   if (request.reference == kNoId) poses_.add_root(*request.frame, backend_.report().keyframe);
-  times_.add("map_insert", insert_watch.ms());
+  mapped.insert_ms = insert_watch.ms();
   tell_changes(false);
   const Stopwatch refine_watch;
   snapshots_.publish(epoch, backend_.refine());
-  times_.add("map_refine", refine_watch.ms());
+  mapped.refine_ms = refine_watch.ms();
   tell_changes(false);
   const Stopwatch loop_watch;
   LocalMapPtr moved = backend_.close_loops();
   const bool is_correction = moved != nullptr;
   if (moved) snapshots_.publish(epoch, std::move(moved));
-  times_.add("loop_closing", loop_watch.ms());
+  mapped.loop_closing_ms = loop_watch.ms();
   tell_loops();
   tell_changes(is_correction);
-  count(backend_.report());
+  mapped.report = backend_.report();
+  events_.publish(std::move(mapped));
 }
 
 void MappingSession::follow(const KeyframeRequest& request, Epoch epoch) {
   snapshots_.publish(epoch, backend_.follow(request));
 }
 
+void MappingSession::correct(const std::function<void()>& change) {
+  backend_.record_changes(true);  // it may change nothing, which is not told
+  change();
+  tell_changes(true);
+}
+
+MapChanged MappingSession::begin_telling() {
+  backend_.record_changes(true);
+  return whole_map(backend_.map());
+}
+
 void MappingSession::tell_changes(bool is_correction) {
   const MapChanges changes = backend_.take_changes();
   const Map& map = backend_.map();
+  if (map.records_changes() && changes.empty()) return;
   MapChanged told;
   told.added_keyframes = poses_of(map, changes.added_keyframes);
   told.moved_keyframes = poses_of(map, changes.moved_keyframes);
@@ -75,23 +93,22 @@ void MappingSession::tell_loops() {
   const std::size_t all = log.forgotten() + log.records().size();
   const std::size_t fresh = std::min(all - told_loops_, log.records().size());
   for (std::size_t i = log.records().size() - fresh; i < log.records().size(); ++i) {
-    const LoopRecord& r = log.records()[i];
-    events_.publish(
-        LoopConsidered{r.query, r.candidate, r.accepted, r.verdict, r.effect, r.largest_move});
+    tell_loop(log.records()[i]);
   }
   told_loops_ = all;
 }
 
-void MappingSession::count(const MappingReport& report) {
-  ++totals_.keyframes;
-  totals_.new_points += report.new_points;
-  totals_.triangulated_points += report.triangulated_points;
-  totals_.fused_points += report.fused_points;
-  totals_.culled_points += report.culled_points;
-  totals_.culled_keyframes += static_cast<int>(report.culled_keyframes.size());
-  totals_.bundle_keyframes += report.bundle_keyframes;
-  totals_.bundle_observations += report.bundle_observations;
-  totals_.outlier_observations += report.outlier_observations;
+void MappingSession::tell_loop(const LoopRecord& r) {
+  LoopFound found{r.query, r.candidate, r.bow_score, std::nullopt};
+  if (std::isfinite(r.global_distance)) found.global_distance = r.global_distance;
+  events_.publish(found);
+  if (!r.accepted) {
+    events_.publish(LoopRefused{r.query, r.candidate, r.verdict});
+  } else if (r.joined) {
+    events_.publish(MapsJoined{r.query, r.candidate, r.joined->kept, r.joined->gone});
+  } else {
+    events_.publish(LoopClosed{r.query, r.candidate, r.largest_move});
+  }
 }
 
 MapChanged whole_map(const Map& map) {

@@ -2,13 +2,12 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <functional>
 
 #include "slam/backend.h"
 #include "slam/event_stream.h"
-#include "slam/mapping_totals.h"
 #include "slam/snapshot_exchange.h"
-#include "slam/stage_times.h"
 #include "slam/tracked_poses.h"
 
 namespace dxslam {
@@ -21,28 +20,27 @@ class MappingSession {
 
   /// All must outlive this.
   MappingSession(Backend& backend, SnapshotExchange& snapshots, EventStream& events,
-                 StageTimes& times, TrackedPoses& poses)
-      : backend_(backend), snapshots_(snapshots), events_(events), times_(times), poses_(poses) {}
+                 TrackedPoses& poses)
+      : backend_(backend), snapshots_(snapshots), events_(events), poses_(poses) {}
 
   /// Local mapping and loop closing for a new keyframe.
   void map_keyframe(const KeyframeRequest& request, Epoch epoch);
   /// Localization only: the local map around the frame.
   void follow(const KeyframeRequest& request, Epoch epoch);
-  /// Tells what has changed in the map since this was called last.
-  void tell_changes(bool is_correction);
-
-  const MappingTotals& totals() const { return totals_; }
+  /// Calls `change`, which moves what is in the map, and tells of it.
+  void correct(const std::function<void()>& change);
+  /// The whole map, as if it had just been added. What changes from now on is told.
+  MapChanged begin_telling();
 
  private:
+  void tell_changes(bool is_correction);
   void tell_loops();
-  void count(const MappingReport& report);
+  void tell_loop(const LoopRecord& record);
 
   Backend& backend_;
   SnapshotExchange& snapshots_;
   EventStream& events_;
-  StageTimes& times_;
   TrackedPoses& poses_;
-  MappingTotals totals_;
   std::size_t told_loops_ = 0;  // of all that the loop log ever had
 };
 

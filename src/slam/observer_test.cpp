@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <atomic>
 #include <cstring>
 #include <map>
@@ -176,16 +177,152 @@ TEST(Observer, TellsOfLossPlaceAndRecordings) {
   const auto lost = only<TrackingLost>(messages);
   ASSERT_EQ(lost.size(), 1U);
   EXPECT_EQ(lost[0].stamp, 100.0);
-  EXPECT_EQ(lost[0].reason, LossReason::kNoPose);
+  EXPECT_EQ(lost[0].reason, LossReason::kFewKeypoints);
+  EXPECT_EQ(lost[0].keypoints, 0);
   const auto places = only<PlaceFound>(messages);
   ASSERT_FALSE(places.empty());
   EXPECT_GT(places.back().confidence, 0.5);
-  EXPECT_EQ(only<RecordingBegun>(messages).size(), 1U);
+  const auto begun = only<RecordingBegun>(messages);
+  ASSERT_EQ(begun.size(), 2U);
+  EXPECT_EQ(begun[0].number, 0);
+  EXPECT_EQ(begun[1].number, 1);
+  EXPECT_TRUE(std::holds_alternative<RecordingBegun>(messages.front()->event));
+  EXPECT_EQ(only<RecordingEnded>(messages).size(), 2U);
+  EXPECT_TRUE(std::holds_alternative<RunFinished>(messages.back()->event));
   for (const MapChanged& change : only<MapChanged>(messages)) {
     EXPECT_TRUE(!change.is_correction || !change.moved_keyframes.empty() ||
                 !change.moved_points.empty());
   }
   EXPECT_EQ(only<FrameTracked>(messages).back().frame.stamp, 300.0);
+}
+
+// What it is lost in front of makes the difference.
+TEST(Observer, TellsWhyItIsLost) {
+  SystemOptions options = options_of(true);
+  options.mode = "localization";
+  System system(recording().camera(), std::make_unique<RecordingExtractor>(), options);
+  const auto first = make_system(true);
+  for (int i = 0; i < kFrames; ++i) first->process(image_of(i));
+  first->finish();
+  system.load_map(Map(take_apart(first->map())), {});
+  const SubscriptionPtr reader = system.subscribe(100, EventKinds::of<TrackingLost>());
+  RgbdImage blind = image_of(0);
+  const std::int32_t nothing = -1;
+  blind.color = blind.color.clone();
+  std::memcpy(blind.color.data, &nothing, sizeof(nothing));
+  system.process(blind);
+  blind.stamp += 1.0;
+  system.process(blind);  // lost still: nothing new
+  RgbdImage seen = image_of(20);
+  seen.stamp = 10.0;
+  system.process(seen);
+  system.finish();
+  const auto lost = only<TrackingLost>(read_all(*reader));
+  ASSERT_EQ(lost.size(), 1U);
+  EXPECT_EQ(lost[0].reason, LossReason::kFewKeypoints);
+  EXPECT_STREQ(describe(lost[0].reason), "too few keypoints");
+}
+
+// Both recordings in one world in the end, whose second began as its own.
+TEST(Observer, TellsOfLoopsFoundAndMapsJoined) {
+  SystemOptions options = options_of(true);
+  options.new_map_after = 3;
+  options.relocalization.acceptance.min_inliers = 100000;  // never satisfied
+  options.relocalization.consensus.min_inliers = 100000;
+  System system(recording().camera(), std::make_unique<RecordingExtractor>(), options);
+  const SubscriptionPtr reader = system.subscribe(100000);
+  for (int i = 0; i < 30; ++i) system.process(image_of(i));
+  system.begin_sequence();
+  for (int i = 0; i < kFrames; ++i) {
+    RgbdImage image = image_of(i);
+    image.stamp += 100.0;
+    system.process(image);
+  }
+  system.finish();
+  const std::vector<MessagePtr> messages = read_all(*reader);
+  const auto joined = only<MapsJoined>(messages);
+  ASSERT_EQ(joined.size(), 1U);
+  EXPECT_EQ(joined[0].kept_component, 0U);
+  EXPECT_EQ(joined[0].joined_component, 1U);
+  const auto lost = only<TrackingLost>(messages);
+  ASSERT_FALSE(lost.empty());
+  EXPECT_EQ(lost[0].reason, LossReason::kPlaceUnknown);
+  EXPECT_EQ(only<LoopFound>(messages).size(),
+            only<LoopRefused>(messages).size() + only<LoopClosed>(messages).size() + joined.size());
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (!std::holds_alternative<MapsJoined>(messages[i]->event)) continue;
+    EXPECT_TRUE(std::holds_alternative<LoopFound>(messages[i - 1]->event));
+    const auto* change = std::get_if<MapChanged>(&messages[i + 1]->event);
+    ASSERT_NE(change, nullptr);
+    EXPECT_TRUE(change->is_correction);
+  }
+  for (const KeyframeMapped& mapped : only<KeyframeMapped>(messages)) {
+    EXPECT_GT(mapped.insert_ms, 0.0);
+    EXPECT_NE(mapped.report.keyframe, kNoId);
+  }
+}
+
+// Poses follow the map: those of a version are what the keyframes of that version say.
+TEST(Observer, AllPosesOfAVersionAreToBeHadAtAnyTime) {
+  const auto system = make_system(false);
+  std::atomic<bool> ended{false};
+  std::thread asking([&] {
+    std::uint64_t version = 0;
+    std::size_t frames = 0;
+    while (!ended) {
+      const auto poses = system->all_poses();
+      if (!poses) return ADD_FAILURE() << "the map is whole";
+      EXPECT_GE(poses->map_version, version);
+      EXPECT_GE(poses->frames.size(), frames);
+      version = poses->map_version;
+      frames = poses->frames.size();
+    }
+  });
+  for (int i = 0; i < kFrames; ++i) system->process(image_of(i));
+  system->finish();
+  ended = true;
+  asking.join();
+  const AllPoses poses = system->all_poses().value();
+  const Trajectory trajectory = system->trajectory();
+  EXPECT_EQ(poses.map_version, system->events().map_version());
+  ASSERT_EQ(poses.frames.size(), trajectory.size());
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    EXPECT_EQ(poses.frames[i].stamp, trajectory[i].stamp);
+    EXPECT_EQ(poses.frames[i].component, 0U);
+    EXPECT_EQ(poses.frames[i].world_from_camera.matrix(), trajectory[i].world_from_camera.matrix());
+  }
+}
+
+// The squared error over its covariance has a mean of 6, one per direction, where that is right.
+// The map is made of noisy images too, which the covariance leaves out, so that it is larger: 3.7
+// here.
+TEST(Observer, TheCovarianceOfAPoseFitsItsError) {
+  const auto system = make_system(true);
+  const SubscriptionPtr reader =
+      system->subscribe(Subscription::kUnbounded, EventKinds::of<FrameTracked>());
+  for (int i = 0; i < kFrames; ++i) system->process(image_of(i));
+  system->finish();
+  double sum = 0.0;
+  int count = 0;
+  for (const FrameTracked& tracked : only<FrameTracked>(read_all(*reader))) {
+    if (tracked.frame.index == 0) {
+      EXPECT_FALSE(tracked.covariance);  // the origin by definition
+      continue;
+    }
+    ASSERT_TRUE(tracked.covariance);
+    const Matrix6d& covariance = *tracked.covariance;
+    EXPECT_EQ(covariance, covariance.transpose());
+    const Eigen::LLT<Matrix6d> factors(covariance);
+    ASSERT_EQ(factors.info(), Eigen::Success);
+    const SE3 truth = PointScene::pose(place(static_cast<int>(tracked.frame.index)));
+    const Vector6d error = (tracked.frame.world_from_camera.inverse() * truth).log();
+    sum += error.dot(factors.solve(error));
+    ++count;
+  }
+  ASSERT_EQ(count, kFrames - 1);
+  const double normalised = sum / count / 6.0;
+  EXPECT_GT(normalised, 0.3);
+  EXPECT_LT(normalised, 10.0);
 }
 
 // Equal input gives equal output, whoever listens, and however slowly.

@@ -17,21 +17,20 @@ System::~System() = default;
 void System::load_map(Map map, std::vector<LoopEdge> closed_loops) {
   engine_->load_map(std::move(map), std::move(closed_loops));
 }
-void System::set_autosave(int keyframes, MapCallback save) {
-  engine_->set_autosave(keyframes, std::move(save));
-}
 void System::set_mapping(bool on) { engine_->set_mapping(on); }
-void System::begin_sequence() { engine_->begin_sequence(); }
+int System::begin_sequence() { return engine_->begin_sequence(); }
 
 void System::process(const RgbdImage& image) { engine_->process(image); }
 bool System::try_process(const RgbdImage& image) { return engine_->try_process(image); }
 void System::finish(const MayGoOn& may_go_on) { engine_->finish(may_go_on); }
 bool System::has_failed() const { return engine_->has_failed(); }
 
-SubscriptionPtr System::subscribe(std::size_t capacity) {
-  return engine_->events().subscribe(capacity);
+SubscriptionPtr System::subscribe(std::size_t capacity, EventKinds kinds) {
+  return engine_->events().subscribe(capacity, kinds);
 }
 std::optional<WholeMap> System::whole_map() { return engine_->whole_map(); }
+std::optional<AllPoses> System::all_poses() { return engine_->all_poses(); }
+bool System::read_map(const MapReader& read) { return engine_->read_map(read); }
 EventStream& System::events() { return engine_->events(); }
 
 const FrameLog& System::frames() const { return engine_->frames(); }
@@ -49,10 +48,7 @@ const std::vector<LoopEdge>& System::closed_loops() const {
 }
 const LoopLog& System::loop_log() const { return engine_->backend().loop_log(); }
 const std::string& System::loop_method() const { return engine_->backend().loop_method(); }
-const std::vector<MapSize>& System::map_sizes() const { return engine_->map_sizes(); }
-MappingTotals System::mapping_totals() const { return engine_->mapping_totals(); }
-const StageTimes& System::times() const { return engine_->times(); }
-const CallbackFailures& System::callback_failures() const { return engine_->callback_failures(); }
+CallbackFailures System::callback_failures() const { return engine_->callback_failures(); }
 const FeatureExtractor& System::extractor() const { return engine_->extractor(); }
 
 }  // namespace dxslam

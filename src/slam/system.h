@@ -15,12 +15,11 @@
 #include "loop_closing/loop_edge.h"
 #include "map/map.h"
 #include "optimization/may_go_on.h"
+#include "slam/callback_guard.h"
 #include "slam/event_stream.h"
 #include "slam/frame_log.h"
 #include "slam/loop_log.h"
-#include "slam/mapping_totals.h"
 #include "slam/observer.h"
-#include "slam/stage_times.h"
 #include "slam/system_options.h"
 #include "slam/tracked_poses.h"
 
@@ -28,22 +27,16 @@ namespace dxslam {
 
 class SystemEngine;
 
-/// What the callbacks threw. They should not; it ends nothing, but is not forgotten either.
-struct CallbackFailures {
-  int count = 0;
-  std::string first;  ///< what it said
-};
-
 /// The map at one moment, for readers of the event stream who were not there from the start.
 struct WholeMap {
   std::uint64_t map_version = 0;  ///< changes up to this one are in it
   MapChanged map;                 ///< all of it, as added
 };
 
-/// How large the map was when a recording ended.
-struct MapSize {
-  std::size_t keyframes = 0;
-  std::size_t points = 0;
+/// Where the frames so far were, by the map at one moment.
+struct AllPoses {
+  std::uint64_t map_version = 0;  ///< changes up to this one are in it
+  std::vector<FramePose> frames;  ///< all that have a pose, in order
 };
 
 /// The whole system, as in figure 1 of the paper: feature extraction in the caller's thread,
@@ -52,21 +45,22 @@ struct MapSize {
 /// spare should read its images ahead in a thread of its own. In deterministic mode the same steps
 /// run one after another in the caller's thread, and equal input gives equal output to the bit.
 ///
-/// process(), try_process() and finish() belong to one thread; on_frame is called by the tracking
-/// thread (in deterministic mode by the caller's).
+/// process(), try_process() and finish() belong to one thread. What comes of the images is told by
+/// subscribe(), while it happens, and by the results below afterwards.
 ///
 /// What goes wrong in tracking or mapping ends the run (has_failed()): process(), try_process() and
 /// finish() throw it, every time from then on. finish() stops the threads all the same, so that the
 /// results so far can be read afterwards: the frames always, and the map and what hangs on it
 /// (components, trajectories) where map_is_whole(). What extraction throws concerns its image
-/// alone: the next one may follow. What a callback throws is caught and counted
-/// (callback_failures()).
+/// alone: the next one may follow.
 class System {
  public:
   using FrameCallback = std::function<void(const TrackedFrame&)>;
 
-  /// Takes the extractor. Throws InputError for options out of range, and where the operating
-  /// system gives no threads.
+  /// Takes the extractor. `on_frame` is called with each frame when it was tracked, by the tracking
+  /// thread (in deterministic mode by the caller's), which waits for it: simple where it is quick.
+  /// What it throws is caught and counted (callback_failures()). Throws InputError for options out
+  /// of range, and where the operating system gives no threads.
   System(const Camera& camera, std::unique_ptr<FeatureExtractor> extractor,
          const SystemOptions& options, FrameCallback on_frame = nullptr);
   ~System();
@@ -76,15 +70,12 @@ class System {
   /// Goes on with a map made before: the first frames look for their place in it. Before the first
   /// image only. Throws InputError in localization mode without a map (at the first image).
   void load_map(Map map, std::vector<LoopEdge> closed_loops);
-  /// Calls `save` in the mapping thread after every `keyframes` new ones, whether or not it threw
-  /// the time before; the map must not be kept beyond the call. Before the first image only.
-  using MapCallback = std::function<void(const Map&, const std::vector<LoopEdge>&)>;
-  void set_autosave(int keyframes, MapCallback save);
   /// Switches between mapping (true) and localization in the map so far, from the next frame on.
   /// Any thread.
   void set_mapping(bool on);
-  /// The next image is of another recording: it may be anywhere in the map.
-  void begin_sequence();
+  /// The next image is of another recording: it may be anywhere in the map. Returns the number by
+  /// which messages name that recording. They count from 0, one that begins without this included.
+  int begin_sequence();
 
   /// Takes the next image in time order. Extracts its features in the calling thread, while the one
   /// before is tracked, and waits while tracking is `queued_frames` behind.
@@ -100,13 +91,27 @@ class System {
   /// Whether something went wrong in tracking or mapping: no image is taken any more. Any thread.
   bool has_failed() const;
 
-  /// What happens inside, from now on (observer.h); ends with finish() or an error. A reader that
-  /// is too slow loses the oldest messages, and nobody waits for it. Any thread.
-  SubscriptionPtr subscribe(std::size_t capacity = 1024);
+  /// What happens inside, from now on (observer.h), or the kinds of it that are asked for; ends
+  /// with finish() or an error. A reader that is too slow loses the oldest messages, and nobody
+  /// waits for it (event_stream.h says how to lose none). event_reader.h reads in a thread of its
+  /// own. Any thread.
+  SubscriptionPtr subscribe(std::size_t capacity = 1024, EventKinds kinds = EventKinds::all());
   /// The map as it is now; nothing once a change of it has failed halfway. Waits while the map is
   /// worked on. Any thread.
   std::optional<WholeMap> whole_map();
-  /// For those who have something to tell as well: that the map was saved.
+  /// The poses of all frames tracked so far, as the map has them now: after a loop was closed,
+  /// other ones than were told when they were tracked. With the version of the map, which messages
+  /// name too. Nothing once a change of the map has failed halfway. Waits while the map is worked
+  /// on, and holds up mapping while it works out poses, not while it reads the frames. Any thread.
+  std::optional<AllPoses> all_poses();
+  /// Calls `read` with the map as it is now, e.g. to save it, in the calling thread. Meanwhile the
+  /// map stays as it is: mapping waits, so `read` should copy what it needs and return, and must
+  /// call nothing of this system. False, without a call, once a change of the map has failed
+  /// halfway. Waits while the map is worked on. Throws what `read` throws. Any thread.
+  using MapReader = std::function<void(const Map&, const std::vector<LoopEdge>&)>;
+  bool read_map(const MapReader& read);
+  /// For those who have something to tell as well: an image that could not be read, that the map
+  /// was saved.
   EventStream& events();
 
   /// Every frame given, in order. The ones that began a map have no reference.
@@ -127,11 +132,8 @@ class System {
   const LoopLog& loop_log() const;
   /// How loops are looked for, in a word.
   const std::string& loop_method() const;
-  /// One per recording (begin_sequence), in order.
-  const std::vector<MapSize>& map_sizes() const;
-  MappingTotals mapping_totals() const;
-  const StageTimes& times() const;
-  const CallbackFailures& callback_failures() const;
+  /// What `on_frame` has thrown so far. Any thread.
+  CallbackFailures callback_failures() const;
   const FeatureExtractor& extractor() const;
 
  private:

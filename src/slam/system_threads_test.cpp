@@ -96,14 +96,22 @@ TEST(SystemThreads, OneThreadRepeatsItselfToTheBit) {
 TEST(SystemThreads, LiveInputIsDroppedRatherThanWaitedFor) {
   SystemOptions live = options(false);
   live.queued_frames = 1;
-  std::atomic<int> seen{0};
-  System system(recording().camera(), std::make_unique<RecordingExtractor>(), live,
-                [&](const TrackedFrame&) { ++seen; });
+  System system(recording().camera(), std::make_unique<RecordingExtractor>(), live);
+  const SubscriptionPtr reader =
+      system.subscribe(Subscription::kUnbounded, EventKinds::of<FrameTracked, ImageSkipped>());
   int taken = 0;
   for (const RgbdImage& image : recording().images()) taken += system.try_process(image) ? 1 : 0;
   system.finish();
   EXPECT_GE(taken, 1);
-  EXPECT_EQ(seen, taken);
+  int tracked = 0;
+  int dropped = 0;
+  while (const MessagePtr message = reader->try_next()) {
+    if (std::holds_alternative<FrameTracked>(message->event)) ++tracked;
+    const auto* skipped = std::get_if<ImageSkipped>(&message->event);
+    if (skipped != nullptr && skipped->reason == SkipReason::kDropped) ++dropped;
+  }
+  EXPECT_EQ(tracked, taken);
+  EXPECT_EQ(dropped, kFrames - taken);
   EXPECT_EQ(system.frames().size(), static_cast<std::size_t>(taken));
 }
 
@@ -178,6 +186,7 @@ TEST(SystemThreads, AnImageThatCannotBeExtractedCostsOnlyItself) {
   for (const bool deterministic : {true, false}) {
     System system(recording().camera(), std::make_unique<RecordingExtractor>(20),
                   options(deterministic));
+    const SubscriptionPtr reader = system.subscribe(10, EventKinds::of<ImageSkipped>());
     int failed = 0;
     for (const RgbdImage& image : recording().images()) {
       try {
@@ -188,6 +197,12 @@ TEST(SystemThreads, AnImageThatCannotBeExtractedCostsOnlyItself) {
     }
     system.finish();
     EXPECT_EQ(failed, 1);
+    const MessagePtr told = reader->try_next();
+    ASSERT_NE(told, nullptr);
+    const auto& skipped = std::get<ImageSkipped>(told->event);
+    EXPECT_EQ(skipped.index, 20);
+    EXPECT_EQ(skipped.reason, SkipReason::kNotExtracted);
+    EXPECT_EQ(skipped.what, "broken image");
     EXPECT_EQ(system.trajectory().size(), static_cast<std::size_t>(kFrames - 1)) << deterministic;
     EXPECT_TRUE(system.map_is_whole());
   }
@@ -199,18 +214,12 @@ TEST(SystemThreads, ACallbackThatThrowsEndsNothing) {
     System system(recording().camera(), std::make_unique<RecordingExtractor>(),
                   options(deterministic), [&](const TrackedFrame&) {
                     if (++frames == 5) throw 5;
+                    if (frames == 7) throw std::runtime_error("disk full");
                   });
-    int saves = 0;
-    system.set_autosave(2, [&](const Map&, const std::vector<LoopEdge>&) {
-      ++saves;
-      throw std::runtime_error("disk full");
-    });
     for (const RgbdImage& image : recording().images()) system.process(image);
     system.finish();
     EXPECT_EQ(frames, kFrames);
-    EXPECT_GT(saves, 1);
-    EXPECT_EQ(saves, system.mapping_totals().keyframes / 2);  // tried again each time
-    EXPECT_EQ(system.callback_failures().count, saves + 1);
+    EXPECT_EQ(system.callback_failures().count, 2);
     EXPECT_FALSE(system.callback_failures().first.empty());
     EXPECT_EQ(system.trajectory().size(), static_cast<std::size_t>(kFrames));
   }

@@ -3,8 +3,74 @@
 #include "slam/tracked_poses.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace dxslam {
+namespace {
+
+constexpr std::size_t kFramesAtOnce = 512;  // read while tracking may have to wait
+
+}  // namespace
+
+void TrackedPoses::append(const TrackedFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  frames_.append(frame);
+}
+
+void TrackedPoses::add_root(const Frame& frame, KeyframeId keyframe) {
+  const std::lock_guard lock(mutex_);
+  roots_.push_back({frame.index, frame.stamp, keyframe});
+}
+
+TrackedPoses::Frames TrackedPoses::tracked_so_far() const {
+  Frames all;
+  std::size_t end = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    end = frames_.size();
+  }
+  for (std::size_t next = 0; next < end;) {
+    const Frames some = some_from(next);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+TrackedPoses::Frames TrackedPoses::some_from(std::size_t& next) const {
+  const std::lock_guard lock(mutex_);
+  Frames some;
+  const std::size_t end = std::min(frames_.size(), next + kFramesAtOnce);
+  for (; next < end; ++next) {
+    const TrackedFrame frame = frames_[next];
+    if (frame.state != TrackingState::kTracking) continue;
+    const KeyframeId reference = reference_of(frame);
+    if (reference == kNoId) continue;
+    some.push_back({frame.index, frame.stamp, reference, frame.reference_from_camera});
+  }
+  return some;
+}
+
+std::vector<FramePose> TrackedPoses::poses_of(const Frames& frames, const Map& map) {
+  struct Place {
+    std::uint32_t component;
+    SE3 world_from_reference;
+  };
+  std::unordered_map<KeyframeId, Place> places;  // many frames hang on one keyframe
+  std::vector<FramePose> poses;
+  poses.reserve(frames.size());
+  for (const Hanging& frame : frames) {
+    auto found = places.find(frame.reference);
+    if (found == places.end()) {
+      const Map::Anchor anchor = map.anchor_of(frame.reference);
+      const Keyframe& keyframe = map.keyframe(anchor.keyframe);
+      const Place place{keyframe.component, keyframe.world_from_camera * anchor.anchor_from_camera};
+      found = places.emplace(frame.reference, place).first;
+    }
+    poses.push_back({frame.index, frame.stamp, found->second.component,
+                     found->second.world_from_reference * frame.reference_from_camera});
+  }
+  return poses;
+}
 
 std::vector<ComponentSummary> TrackedPoses::components(const Map& map) const {
   std::vector<ComponentSummary> all(map.component_count());

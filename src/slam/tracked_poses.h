@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -20,16 +21,35 @@ struct ComponentSummary {
   std::size_t frames = 0;  ///< tracked in it
 };
 
+/// The pose of a tracked frame, in the world of its component.
+struct FramePose {
+  std::int64_t index = 0;
+  double stamp = 0.0;  ///< seconds
+  std::uint32_t component = 0;
+  SE3 world_from_camera;
+};
+
 /// Every frame of a run, and where a map says that it was. Frames are appended by one thread and
-/// roots by another; the rest is for when both are done.
+/// roots by another, while others may ask for tracked_so_far(); the rest is for when both are done.
 class TrackedPoses {
  public:
-  void append(const TrackedFrame& frame) { frames_.append(frame); }
+  void append(const TrackedFrame& frame);
   /// `keyframe`, made of `frame`, began a component.
-  void add_root(const Frame& frame, KeyframeId keyframe) {
-    roots_.push_back({frame.index, frame.stamp, keyframe});
-  }
+  void add_root(const Frame& frame, KeyframeId keyframe);
   const FrameLog& frames() const { return frames_; }
+
+  /// A frame with a pose, and the keyframe that it hangs on.
+  struct Hanging {
+    std::int64_t index = 0;
+    double stamp = 0.0;
+    KeyframeId reference = kNoId;
+    SE3 reference_from_camera;
+  };
+  using Frames = std::vector<Hanging>;
+  /// All that have a pose so far, in order; without one that begins a map that is not there yet.
+  Frames tracked_so_far() const;
+  /// Where the map has them.
+  static std::vector<FramePose> poses_of(const Frames& frames, const Map& map);
 
   /// All maps there are, the one with most tracked frames first.
   std::vector<ComponentSummary> components(const Map& map) const;
@@ -45,9 +65,11 @@ class TrackedPoses {
   };
   KeyframeId reference_of(const TrackedFrame& frame) const;
   std::optional<std::uint32_t> component_of(const TrackedFrame& frame, const Map& map) const;
+  Frames some_from(std::size_t& next) const;
 
-  FrameLog frames_;
-  std::vector<Root> roots_;
+  mutable std::mutex mutex_;
+  FrameLog frames_;          // guarded by mutex_ while they are appended
+  std::vector<Root> roots_;  // likewise
 };
 
 /// Poses of the keyframes of one component.

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "slam/stage_times.h"
+
 namespace dxslam {
 namespace {
 
@@ -16,37 +18,39 @@ TrackedFrame not_found(const Frame& frame) {
   return result;
 }
 
+bool is_lost(const TrackedFrame& frame) { return frame.state == TrackingState::kLost; }
+
 }  // namespace
 
 TrackingSession::TrackingSession(const Camera& camera, const DescriptorTraits& traits,
                                  const SystemOptions& options, SnapshotExchange& snapshots,
-                                 RightOfWay& right_of_way, Relocalize relocalize)
+                                 RightOfWay& right_of_way, Relocalize find_in_map)
     : options_(options),
       snapshots_(snapshots),
       right_of_way_(right_of_way),
-      relocalize_(std::move(relocalize)),
+      find_in_map_(std::move(find_in_map)),
       tracker_(camera, traits, options.tracking) {}
 
 TrackingSession::Result TrackingSession::track_or_relocalize(const FramePtr& frame, bool mapping) {
-  if (LocalMapPtr local_map = snapshots_.take()) tracker_.set_local_map(std::move(local_map));
+  follow_mapping();
   Result result;
   result.mapping = mapping;
   result.frame = not_found(*frame);
   if (!seeks_place(mapping)) track(frame, result);
-  if (result.frame.state == TrackingState::kLost) find_place(frame, result);
-  if (result.frame.state == TrackingState::kLost) {
+  if (is_lost(result.frame)) relocalize(frame, result);
+  note_loss(result);
+  if (is_lost(result.frame)) {
     begin_new_map_if_lost(*frame, mapping);
   } else {
     lost_frames_ = 0;
   }
-  const bool was_tracking =
-      std::exchange(tracking_, result.frame.state == TrackingState::kTracking);
-  if (was_tracking && !tracking_) {
-    result.lost =
-        TrackingLost{frame->stamp, seeking_ ? LossReason::kPlaceUnknown : LossReason::kNoPose};
-  }
+  result.frame.is_keyframe = result.frame.is_keyframe && mapping;
   result.epoch = snapshots_.epoch();
   return result;
+}
+
+void TrackingSession::follow_mapping() {
+  if (LocalMapPtr local_map = snapshots_.take()) tracker_.set_local_map(std::move(local_map));
 }
 
 bool TrackingSession::seeks_place(bool mapping) {
@@ -63,9 +67,15 @@ void TrackingSession::track(const FramePtr& frame, Result& result) {
   map_begun_ = map_begun_ || result.request.has_value();
 }
 
-void TrackingSession::find_place(const FramePtr& frame, Result& result) {
-  const RelocalizationAnswer answer = relocalize_(*frame);
-  if (!answer.local_map) return;
+void TrackingSession::relocalize(const FramePtr& frame, Result& result) {
+  const Stopwatch watch;
+  const RelocalizationAnswer answer = find_in_map_(*frame);
+  result.relocalize_ms = watch.ms();
+  if (answer.local_map) resume(frame, answer, result);
+}
+
+void TrackingSession::resume(const FramePtr& frame, const RelocalizationAnswer& answer,
+                             Result& result) {
   const RelocalizationReport& report = answer.report;
   const TrackedFrame tracked = tracker_.resume(frame, answer.local_map, report.world_from_camera,
                                                report.points, result.request);
@@ -75,6 +85,26 @@ void TrackingSession::find_place(const FramePtr& frame, Result& result) {
   result.frame = tracked;
   result.found = PlaceFound{frame->stamp, report.component, report.reference,
                             report.world_from_camera, report.confidence};
+}
+
+void TrackingSession::note_loss(Result& result) {
+  has_pose_ = result.frame.state == TrackingState::kTracking;
+  if (!has_pose_ && !told_loss_) {
+    const int matches = seeking_ ? 0 : tracker_.most_matches();
+    result.lost = TrackingLost{result.frame.stamp, loss_reason(result.frame),
+                               result.frame.keypoints, matches};
+  }
+  told_loss_ = !has_pose_;
+}
+
+LossReason TrackingSession::loss_reason(const TrackedFrame& frame) const {
+  if (!seeking_) return tracker_.loss_reason();
+  const bool blind = frame.keypoints < options_.tracking.min_inliers;
+  return blind ? LossReason::kFewKeypoints : LossReason::kPlaceUnknown;
+}
+
+std::optional<Matrix6d> TrackingSession::covariance() const {
+  return has_pose_ ? tracker_.covariance() : std::nullopt;
 }
 
 void TrackingSession::begin_new_map_if_lost(const Frame& frame, bool mapping) {
@@ -91,7 +121,7 @@ bool TrackingSession::can_begin_map(const Frame& frame) const {
 
 void TrackingSession::begin_recording() {
   seeking_ = map_begun_;
-  tracking_ = false;  // nothing is lost
+  told_loss_ = false;
   go_on_elsewhere();
 }
 

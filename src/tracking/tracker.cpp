@@ -82,6 +82,8 @@ void Tracker::follow(const LocalMap& next) {
 
 TrackedFrame Tracker::track(const FramePtr& raw, std::optional<KeyframeRequest>& request) {
   request.reset();
+  most_matches_ = 0;
+  disbelieved_ = false;
   ++since_keyframe_.frames;
   if (!local_) return conclude(raw, start(*raw), request);
   FramePtr frame = straightened(raw, last_velocity_);
@@ -160,6 +162,9 @@ TrackedFrame Tracker::conclude(const FramePtr& frame, const OptionalEstimate& es
     best = std::max(best, estimate->map_points);
   }
   if (!estimate && local_) state_ = TrackingState::kLost;
+  information_ = estimate ? estimate->information : Matrix6d::Zero();
+  variance_factor_ = estimate ? estimate->variance_factor : 1.0;
+  keypoints_ = static_cast<int>(frame->size());
   TrackedFrame result = report(frame, estimate);
   if (estimate && (!local_ || needs_keyframe(*frame, *estimate))) {
     request = make_request(frame, *estimate);
@@ -233,7 +238,7 @@ std::vector<KnownPoint> Tracker::match_predicted(const Frame& frame, const Keypo
 }
 
 Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const KeypointGrid& grid,
-                                                       SE3 predicted, double fair) const {
+                                                       SE3 predicted, double fair) {
   const std::vector<KnownPoint> last_known = known_points(last_, *local_);
   struct Search {
     double radius;
@@ -243,6 +248,7 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
                               Search{options_.narrow_radius, fair}}) {
     const std::vector<KnownPoint> known =
         match_predicted(frame, grid, last_known, predicted, search.radius);
+    note_matches(known);
     if (static_cast<int>(known.size()) < options_.min_predicted_matches) return std::nullopt;
     OptionalEstimate estimate = optimise(frame, predicted, known);
     if (!estimate) return std::nullopt;
@@ -260,7 +266,7 @@ Tracker::OptionalEstimate Tracker::track_by_prediction(const Frame& frame, const
 }
 
 Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame, const LastFrame& source,
-                                                        int keypoints) const {
+                                                        int keypoints) {
   const std::vector<KnownPoint> source_known = known_points(source, *local_);
   std::vector<int> known_of(source.frame->size(), -1);
   for (std::size_t i = 0; i < source_known.size(); ++i) {
@@ -282,7 +288,7 @@ Tracker::OptionalEstimate Tracker::track_by_descriptors(const Frame& frame, cons
   return estimate_by_pnp(frame, std::move(known));
 }
 
-Tracker::OptionalEstimate Tracker::track_whole_local_map(const Frame& frame) const {
+Tracker::OptionalEstimate Tracker::track_whole_local_map(const Frame& frame) {
   std::vector<KnownPoint> known;
   for (const Match& m : match_mutual(local_->descriptors, frame.descriptors, traits_.max_distance,
                                      static_cast<float>(options_.ratio))) {
@@ -293,7 +299,8 @@ Tracker::OptionalEstimate Tracker::track_whole_local_map(const Frame& frame) con
 }
 
 Tracker::OptionalEstimate Tracker::estimate_by_pnp(const Frame& frame,
-                                                   std::vector<KnownPoint> known) const {
+                                                   std::vector<KnownPoint> known) {
+  note_matches(known);
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector2d> pixels;
   std::vector<float> depths;
@@ -326,6 +333,8 @@ Tracker::OptionalEstimate Tracker::optimise(const Frame& frame, const SE3& start
   estimate.world_from_camera = pose.world_from_camera;
   estimate.known = std::move(known);
   estimate.rms_pixels = pose.rms_pixels;
+  estimate.information = pose.information;
+  estimate.variance_factor = pose.variance_factor;
   estimate.map_points = count_map_points(estimate.known);
   return estimate;
 }
@@ -381,10 +390,12 @@ Tracker::OptionalEstimate Tracker::track_local_map(const Frame& frame, const Key
       if (taken[static_cast<std::size_t>(k.keypoint)] == 0) known.push_back(k);
     }
   }
+  note_matches(known);
   OptionalEstimate refined = optimise(frame, estimate.world_from_camera, std::move(known));
   if (!refined) return std::nullopt;
   refined->recovered = estimate.recovered;
   if (refined->recovered && !is_believable(frame, *refined, estimate.known, predictions)) {
+    disbelieved_ = true;
     return std::nullopt;
   }
   for (const KnownPoint& k : refined->known) {
@@ -471,6 +482,10 @@ void Tracker::remember(const FramePtr& frame, const OptionalEstimate& estimate) 
   }
   last_velocity_ = velocity_at(*frame, estimate->world_from_camera);
   last_ = {frame, estimate->world_from_camera, points_by_keypoint(*frame, *estimate), camera_};
+}
+
+void Tracker::note_matches(const std::vector<KnownPoint>& known) {
+  most_matches_ = std::max(most_matches_, static_cast<int>(known.size()));
 }
 
 float Tracker::scaled(double pixels_at_640) const {

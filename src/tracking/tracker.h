@@ -38,6 +38,13 @@ class Tracker {
                       const std::vector<PointId>& points, std::optional<KeyframeRequest>& request);
   /// The request of the frame tracked last was not served: what spoke for it counts on.
   void take_back_request() { since_keyframe_ = std::move(handed_over_); }
+  /// Of the pose of the frame given last, as in pose_covariance(); nothing where it has none, or
+  /// began a map.
+  std::optional<Matrix6d> covariance() const;
+  /// Why the frame given last has no pose.
+  LossReason loss_reason() const;
+  /// Known points found in the frame given last, by the attempt that found most.
+  int most_matches() const { return most_matches_; }
   /// Forgets the local map and all motion: the next usable frame starts a new one.
   void restart();
 
@@ -46,6 +53,8 @@ class Tracker {
     SE3 world_from_camera;
     std::vector<KnownPoint> known;  // inliers only
     double rms_pixels = 0.0;
+    Matrix6d information = Matrix6d::Zero();  // with the factor, as in PoseReport
+    double variance_factor = 1.0;
     bool recovered = false;
     int map_points = 0;
   };
@@ -75,15 +84,14 @@ class Tracker {
   /// Matches the last frame's points around the pixels at which a pose puts them. `fair`: the share
   /// of those in view that must agree after the second search.
   OptionalEstimate track_by_prediction(const Frame& frame, const KeypointGrid& grid, SE3 predicted,
-                                       double fair) const;
+                                       double fair);
   std::vector<KnownPoint> match_predicted(const Frame& frame, const KeypointGrid& grid,
                                           const std::vector<KnownPoint>& last_known,
                                           const SE3& predicted, double radius) const;
   /// Matches the strongest `keypoints` of either frame.
-  OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source,
-                                        int keypoints) const;
-  OptionalEstimate track_whole_local_map(const Frame& frame) const;
-  OptionalEstimate estimate_by_pnp(const Frame& frame, std::vector<KnownPoint> known) const;
+  OptionalEstimate track_by_descriptors(const Frame& frame, const LastFrame& source, int keypoints);
+  OptionalEstimate track_whole_local_map(const Frame& frame);
+  OptionalEstimate estimate_by_pnp(const Frame& frame, std::vector<KnownPoint> known);
   OptionalEstimate track_local_map(const Frame& frame, const KeypointGrid& grid,
                                    const Estimate& estimate);
   std::vector<PixelPrediction> predict_local_points(const SE3& world_from_camera,
@@ -100,6 +108,8 @@ class Tracker {
                         std::optional<KeyframeRequest>& request);
   TrackedFrame report(const FramePtr& frame, const OptionalEstimate& estimate) const;
   void remember(const FramePtr& frame, const OptionalEstimate& estimate);
+  /// For most_matches().
+  void note_matches(const std::vector<KnownPoint>& known);
   KeyframeRequest make_request(const FramePtr& frame, const Estimate& estimate);
   std::vector<PointId> points_by_keypoint(const Frame& frame, const Estimate& estimate) const;
   float scaled(double pixels_at_640) const;
@@ -115,6 +125,13 @@ class Tracker {
   int quick_pause_ = 0;                    // frames for which track_quickly is not tried
   SinceKeyframe since_keyframe_;
   SinceKeyframe handed_over_;  // as it was before the last request
+
+  // Of the frame given last, for those who ask how it went.
+  Matrix6d information_ = Matrix6d::Zero();
+  double variance_factor_ = 1.0;
+  int keypoints_ = 0;
+  int most_matches_ = 0;
+  bool disbelieved_ = false;  // a pose was found
 };
 
 }  // namespace dxslam

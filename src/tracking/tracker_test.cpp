@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "core/error.h"
 #include "core/rolling_shutter.h"
@@ -87,15 +88,20 @@ TEST_F(TrackerTest, SaysLostInFrontOfSomethingElseAndRecovers) {
   const TrackedFrame lost = tracker_.track(elsewhere.frame(1, SE3()), request_);
   EXPECT_EQ(lost.state, TrackingState::kLost);
   EXPECT_FALSE(request_.has_value());
+  EXPECT_EQ(tracker_.loss_reason(), LossReason::kFewMatches);
+  EXPECT_LT(tracker_.most_matches(), TrackerOptions().min_inliers);
+  EXPECT_FALSE(tracker_.covariance());
   const TrackedFrame back = tracker_.track(scene_.frame(2, PointScene::pose(0.05)), request_);
   EXPECT_EQ(back.state, TrackingState::kTracking);
   EXPECT_TRUE(back.recovered);
+  EXPECT_TRUE(tracker_.covariance());
 }
 
 TEST_F(TrackerTest, SurvivesAFrameWithoutKeypoints) {
   start();
   const auto empty = std::make_shared<Frame>();
   EXPECT_EQ(tracker_.track(empty, request_).state, TrackingState::kLost);
+  EXPECT_EQ(tracker_.loss_reason(), LossReason::kFewKeypoints);
   EXPECT_EQ(tracker_.track(scene_.frame(2, SE3()), request_).state, TrackingState::kTracking);
 }
 
@@ -103,6 +109,18 @@ TEST_F(TrackerTest, DoesNotStartWithoutDepth) {
   const TrackedFrame tracked = tracker_.track(scene_.frame(0, SE3(), 0.3, 0.0), request_);
   EXPECT_EQ(tracked.state, TrackingState::kNotStarted);
   EXPECT_FALSE(request_.has_value());
+  EXPECT_EQ(tracker_.loss_reason(), LossReason::kFewDepths);
+}
+
+// Every point is found by its descriptor, but all pixels are somewhere else.
+TEST_F(TrackerTest, SaysThatWhatWasFoundAgreesOnNothing) {
+  start();
+  auto scattered = std::make_shared<Frame>(*scene_.frame(1, SE3()));
+  std::mt19937 generator(3);
+  std::shuffle(scattered->pixels.begin(), scattered->pixels.end(), generator);
+  EXPECT_EQ(tracker_.track(scattered, request_).state, TrackingState::kLost);
+  EXPECT_EQ(tracker_.loss_reason(), LossReason::kNoAgreement);
+  EXPECT_GE(tracker_.most_matches(), TrackerOptions().min_inliers);
 }
 
 TEST_F(TrackerTest, PosesFollowTheKeyframeWhenMappingMovesIt) {

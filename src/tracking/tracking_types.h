@@ -25,10 +25,21 @@ struct TrackedFrame {
   int keypoints = 0;
   int keypoints_with_depth = 0;  ///< not counted for frames that a map's place was sought for
   int inliers = 0;               ///< map points that agree with the pose
-  bool is_keyframe = false;
-  bool recovered = false;   ///< found by descriptors alone, without a predicted pose
-  double rms_pixels = 0.0;  ///< of the inliers
+  bool is_keyframe = false;      ///< mapping was asked to make it one
+  bool recovered = false;        ///< found by descriptors alone, without a predicted pose
+  double rms_pixels = 0.0;       ///< of the inliers
 };
+
+/// Why a frame has no pose.
+enum class LossReason {
+  kFewKeypoints,  ///< it shows too few keypoints: a covered lens, a bare wall, darkness
+  kFewDepths,     ///< too few of its keypoints have a depth: no map can begin with it
+  kFewMatches,    ///< too few known points were found in it
+  kNoAgreement,   ///< enough were found, but too few of them agree on one pose
+  kDisbelieved,   ///< a pose was found by descriptors alone, too weak for where it is (recovery.h)
+  kPlaceUnknown,  ///< it was looked for in the whole map, and not found
+};
+const char* describe(LossReason reason);
 
 /// In how many frames a point should have been seen and was matched, since the last report.
 struct PointCount {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <deque>
-#include <mutex>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
@@ -54,30 +54,6 @@ struct Visit {
   OnlineTrajectory file;             ///< these poses, as given at the time
 };
 
-// Which visit the frames are of that are not tracked yet. Two threads.
-class Underway {
- public:
-  void push(Visit& visit) {
-    const std::lock_guard lock(mutex_);
-    visits_.push_back(&visit);
-  }
-  /// The one pushed last.
-  void take_back() {
-    const std::lock_guard lock(mutex_);
-    visits_.pop_back();
-  }
-  Visit& pop() {
-    const std::lock_guard lock(mutex_);
-    Visit& visit = *visits_.front();
-    visits_.pop_front();
-    return visit;
-  }
-
- private:
-  std::mutex mutex_;
-  std::deque<Visit*> visits_;
-};
-
 using Recordings = std::vector<std::unique_ptr<ImageSource>>;
 
 // Both become part of a file of lines and, the scene, of its name.
@@ -111,36 +87,31 @@ Recordings open_all(const LifelongArguments& arguments) {
   return all;
 }
 
-void feed(ImageSource& source, bool dark, Session& session, Visit& visit, Underway& underway) {
+void feed(ImageSource& source, bool dark, Session& session, Visit& visit) {
   const LowLight low_light(LowLight::kDefaultGain);
-  session.system()->begin_sequence();
   const auto give = [&](RgbdImage& image) {
     if (dark) image.color = low_light.apply(image.color, image.index);
     if (visit.frames++ == 0) visit.first_stamp = image.stamp;
-    underway.push(visit);
-    try {
-      session.process(image, false);
-    } catch (...) {
-      if (!session.system()->has_failed()) underway.take_back();  // it will not be tracked
-      throw;
-    }
+    session.process(image, false);
   };
   bool goes_on = true;
   while (goes_on) {
-    std::optional<RgbdImage> image = Session::next(source, visit.failed);
+    std::optional<RgbdImage> image = session.next(source, visit.failed);
     if (!image) return;
     goes_on = session.attempt(source.index(), visit.failed, [&] { give(*image); });
   }
 }
 
+// `begun` counts the recordings it came to.
 void feed_all(const LifelongArguments& arguments, const Recordings& recordings, Session& session,
-              std::deque<Visit>& visits, Underway& underway) {
-  const System& system = *session.system();
+              std::deque<Visit>& visits, std::size_t& begun) {
+  System& system = *session.system();
   for (std::size_t v = 0; v < recordings.size() && !stop_requested() && !system.has_failed(); ++v) {
-    visits.emplace_back(*recordings[v], session.folder(), v + 1);
+    begun = v + 1;
     const bool dark = std::count(arguments.low_light.begin(), arguments.low_light.end(),
                                  static_cast<int>(v) + 1) > 0;
-    feed(*recordings[v], dark, session, visits.back(), underway);
+    system.begin_sequence();  // which numbers them as here
+    feed(*recordings[v], dark, session, visits[v]);
   }
 }
 
@@ -219,6 +190,16 @@ OpenlorisResult openloris_result(const LifelongArguments& arguments,
   return result;
 }
 
+MapSize size_after(std::size_t visit, std::size_t visits, const Session& session) {
+  if (visit + 1 == visits && session.has_whole_map()) {  // whether or not an error ended it
+    const Map& map = session.system()->map();
+    return {map.keyframe_count(), map.point_count()};
+  }
+  const std::map<int, MapSize>& sizes = session.statistics().map_sizes();
+  const auto found = sizes.find(static_cast<int>(visit));
+  return found == sizes.end() ? MapSize{} : found->second;
+}
+
 void write_results(OutputSteps& steps, const LifelongArguments& arguments, Session& session,
                    std::deque<Visit>& visits, const std::vector<VisitResult>& results) {
   ResultFolder& folder = *session.folder();
@@ -231,8 +212,7 @@ void write_results(OutputSteps& steps, const LifelongArguments& arguments, Sessi
   steps.run([&] {
     Json table = Json::array();
     for (std::size_t v = 0; v < visits.size(); ++v) {
-      const auto& sizes = session.system()->map_sizes();
-      table.push_back(row_of(visits[v], results[v], v < sizes.size() ? sizes[v] : MapSize{}));
+      table.push_back(row_of(visits[v], results[v], size_after(v, visits.size(), session)));
     }
     write_file_atomically(folder.file("lifelong.json"), to_json_text(table));
   });
@@ -240,10 +220,10 @@ void write_results(OutputSteps& steps, const LifelongArguments& arguments, Sessi
 }
 
 void print_outcome(const std::deque<Visit>& visits, const std::vector<VisitResult>& results,
-                   const System* system) {
+                   const Session& session) {
   for (std::size_t v = 0; v < visits.size(); ++v) {
     const Visit& visit = visits[v];
-    const MapSize size = v < system->map_sizes().size() ? system->map_sizes()[v] : MapSize{};
+    const MapSize size = size_after(v, visits.size(), session);
     print("{:>3}  {:<24} {:>6} of {:>6} frames localized, {:>5} keyframes, {:>7} points\n", v + 1,
           visit.recording.name(), visit.localized, visit.frames, size.keyframes, size.points);
     if (results[v].truth) print_truth(*results[v].truth, visit.recording.camera());
@@ -253,7 +233,7 @@ void print_outcome(const std::deque<Visit>& visits, const std::vector<VisitResul
 
 // Whatever went wrong before: what can be saved is saved.
 int end(const LifelongArguments& arguments, Session& session, std::deque<Visit>& visits) {
-  session.tell_callback_failures();
+  session.tell_reader_failures();
   OutputSteps steps;
   steps.run([&] { session.rethrow_error(); });
   session.save_map(steps);
@@ -261,7 +241,7 @@ int end(const LifelongArguments& arguments, Session& session, std::deque<Visit>&
   steps.run([&] { results = results_of(session.system(), visits); });
   write_results(steps, arguments, session, visits, results);
   session.all_is_saved();
-  print_outcome(visits, results, session.system());
+  print_outcome(visits, results, session);
   std::size_t frames = 0;
   for (const Visit& visit : visits) frames += visit.frames;
   const int code = judge_tracking(localized(visits), frames, session.why_no_pose());
@@ -283,15 +263,24 @@ int run(const LifelongArguments& arguments) {
   Progress progress("frames", planned);
   std::size_t done = 0;
   std::deque<Visit> visits;  // which stay where they are
-  Underway underway;
-  const auto system = session.start(recordings.front()->camera(), [&](const TrackedFrame& frame) {
-    Visit& visit = underway.pop();
-    note(frame, visit);
-    const bool tracking = frame.state == TrackingState::kTracking;
+  for (const auto& recording : recordings) {
+    visits.emplace_back(*recording, session.folder(), visits.size() + 1);
+  }
+  std::size_t begun = 0;
+  Visit* visit = nullptr;  // that the messages are of
+  const auto system = session.start(recordings.front()->camera(), [&](const Message& message) {
+    if (const auto* recording = std::get_if<RecordingBegun>(&message.event)) {
+      visit = &visits.at(static_cast<std::size_t>(recording->number));
+    }
+    const auto* tracked = std::get_if<FrameTracked>(&message.event);
+    if (tracked == nullptr) return;
+    note(tracked->frame, *visit);
+    const bool tracking = tracked->frame.state == TrackingState::kTracking;
     progress.update(++done, tracking ? "tracking" : "lost");
   });
   for (const auto& recording : recordings) print_recording(*recording);
-  session.run([&] { feed_all(arguments, recordings, session, visits, underway); });
+  session.run([&] { feed_all(arguments, recordings, session, visits, begun); });
+  while (visits.size() > begun) visits.pop_back();
   progress.finish();
   return end(arguments, session, visits);
 }

@@ -87,7 +87,7 @@ void feed(const RunArguments& arguments, ImageSource& source, Session& session, 
   };
   bool goes_on = true;
   while (goes_on) {
-    std::optional<RgbdImage> image = Session::next(source, record.failed_images);
+    std::optional<RgbdImage> image = session.next(source, record.failed_images);
     if (!image) return;
     goes_on = session.attempt(source.index(), record.failed_images, [&] { give(*image); });
   }
@@ -111,9 +111,9 @@ void conclude(const ImageOrigin& sequence, const Session& session, RunRecord& re
   record.truth = compare_with_truth(sequence, record.trajectory);
 }
 
-void print_outcome(const RunRecord& record, const ImageOrigin& sequence, const System* system) {
-  if (system != nullptr) {
-    const auto stages = system->times().summaries();
+void print_outcome(const RunRecord& record, const ImageOrigin& sequence, const Session& session) {
+  if (const System* system = session.system()) {
+    const auto stages = session.statistics().stages();
     const auto frame = stages.find("frame");
     print(
         "{} of {} frames tracked, {} keyframes, {} points; {:.1f} ms per frame ({}), {:.1f} s in "
@@ -136,14 +136,14 @@ int end(const ImageOrigin& sequence, Session& session, OnlineTrajectory& online,
         RunRecord& record) {
   record.interrupted = stop_requested();
   record.why_no_pose = session.why_no_pose();
-  record.callback_failures = session.tell_callback_failures();
+  record.reader_failures = session.tell_reader_failures();
   OutputSteps steps;
   if (!steps.run([&] { session.rethrow_error(); })) record.error = steps.failures().front();
   session.save_map(steps);
   steps.run([&] { conclude(sequence, session, record); });
   write_results(steps, session, online, record, sequence);
   session.all_is_saved();
-  print_outcome(record, sequence, session.system());
+  print_outcome(record, sequence, session);
   const int code = judge_tracking(record.frames_tracked, record.frames_offered, record.why_no_pose);
   if (session.folder() != nullptr) steps.tell_place(session.folder()->path());
   session.tell_map();
@@ -168,7 +168,10 @@ int run(const RunArguments& arguments) {
   RunRecord record;
   record.low_light = arguments.low_light;
   record.realtime = arguments.realtime;
-  const auto system = session.start(source->camera(), [&](const TrackedFrame& frame) {
+  const auto system = session.start(source->camera(), [&](const Message& message) {
+    const auto* tracked = std::get_if<FrameTracked>(&message.event);
+    if (tracked == nullptr) return;
+    const TrackedFrame& frame = tracked->frame;
     if (frame.state == TrackingState::kTracking) {
       if (!record.first_pose_ms) record.first_pose_ms = startup.ms();
       online.append({frame.stamp, frame.world_from_camera});
