@@ -2,13 +2,9 @@
 // Copyright 2026 The dxslam authors
 #include "io/formats/trajectory_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "core/error.h"
@@ -106,37 +102,8 @@ void write_trajectory(const std::string& path, const Trajectory& trajectory) {
   write_file_atomically(path, text);
 }
 
-TrajectoryWriter::TrajectoryWriter(const std::string& path)
-    : path_(path),
-      file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666)) {
-  if (file_ < 0) {
-    throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
-  }
-  try {
-    write(kHeader);
-  } catch (...) {
-    ::close(file_);
-    throw;
-  }
-}
+TrajectoryWriter::TrajectoryWriter(const std::string& path) : file_(path) { file_.append(kHeader); }
 
-TrajectoryWriter::~TrajectoryWriter() { ::close(file_); }
-
-void TrajectoryWriter::append(const StampedPose& pose) { write(format_pose(pose) + "\n"); }
-
-void TrajectoryWriter::write(std::string_view text) {
-  const auto size = size_ + static_cast<std::int64_t>(text.size());
-  while (!text.empty()) {
-    const ssize_t written = ::write(file_, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const int error = errno;
-      static_cast<void>(::ftruncate(file_, size_));  // less is always possible
-      throw InputError(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
-    }
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  size_ = size;
-}
+void TrajectoryWriter::append(const StampedPose& pose) { file_.append(format_pose(pose) + "\n"); }
 
 }  // namespace dxslam

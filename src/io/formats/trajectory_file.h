@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/trajectory.h"
+#include "io/primitives/growing_file.h"
 #include "io/primitives/output_file.h"
 #include "io/primitives/text_file.h"
 
@@ -65,20 +66,13 @@ class TrajectoryWriter {
  public:
   /// Creates or empties the file; throws InputError if that fails.
   explicit TrajectoryWriter(const std::string& path);
-  ~TrajectoryWriter();
-  TrajectoryWriter(const TrajectoryWriter&) = delete;
-  TrajectoryWriter& operator=(const TrajectoryWriter&) = delete;
 
   /// Throws InputError if the row could not be written in full (full disk); the file then ends
   /// with the row before.
   void append(const StampedPose& pose);
 
  private:
-  void write(std::string_view text);
-
-  std::string path_;
-  int file_ = -1;
-  std::int64_t size_ = 0;  // bytes of whole rows
+  GrowingFile file_;
 };
 
 }  // namespace dxslam
