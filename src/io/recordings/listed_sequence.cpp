@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/primitives/image_file.h"
+#include "io/recordings/depth_survey.h"
 #include "io/recordings/stamp_hint.h"
 
 namespace dxslam {
@@ -16,10 +17,7 @@ namespace {
 
 constexpr std::size_t kProbed = 3;  // frames decoded at opening
 constexpr std::size_t kProbeAttempts = 10;
-constexpr double kNearestScene = 0.05;    // metres, least plausible median depth
-constexpr double kFarthestScene = 30.0;   // metres, largest plausible median depth
-constexpr double kOffCentre = 0.2;        // share of the image's side
-constexpr double kEnoughReadings = 0.01;  // share of pixels below which a median says nothing
+constexpr double kOffCentre = 0.2;  // share of the image's side
 
 class ListedSequence : public RgbdSequence {
  public:
@@ -55,28 +53,19 @@ class ListedSequence : public RgbdSequence {
 
   // Throws the first frame's error if no probed frame can be read.
   void probe() {
-    std::vector<float> depths;
-    std::size_t pixels = 0;
-    std::size_t good = 0;
+    std::vector<cv::Mat> depths;
     std::string first_error;
     for (const std::size_t i : probe_order(size())) {
-      if (good >= kProbed || (good > 0 && i >= kProbeAttempts)) break;
+      if (depths.size() >= kProbed || (!depths.empty() && i >= kProbeAttempts)) break;
       try {
-        const RgbdImage image = decode(i);
-        collect_depths(image.depth, depths);
-        pixels += image.depth.total();
-        ++good;
+        depths.push_back(decode(i).depth);
       } catch (const InputError& e) {
         if (first_error.empty()) first_error = e.what();
       }
     }
-    if (good == 0) throw InputError(where() + first_error);
-    if (depths.empty()) return;
-    facts_.depth_share = static_cast<double>(depths.size()) / static_cast<double>(pixels);
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    facts_.median_depth = *middle;
-    check_scale();
+    if (depths.empty()) throw InputError(where() + first_error);
+    survey_depths(depths, facts_);
+    check_depth_scale(listing_.name, listing_.camera, facts_);
   }
 
  private:
@@ -115,24 +104,6 @@ class ListedSequence : public RgbdSequence {
     if (listing_.register_depth) depth = listing_.register_depth(depth);
     if (depth.type() == CV_16UC1) depth.convertTo(depth, CV_32F, 1.0 / camera.depth_factor);
     return depth;
-  }
-
-  static void collect_depths(const cv::Mat& depth, std::vector<float>& depths) {
-    for (int row = 0; row < depth.rows; ++row) {
-      const float* line = depth.ptr<float>(row);
-      std::copy_if(line, line + depth.cols, std::back_inserter(depths),
-                   [](float metres) { return metres > 0.0F; });
-    }
-  }
-
-  void check_scale() const {
-    if (facts_.depth_share < kEnoughReadings) return;
-    if (facts_.median_depth >= kNearestScene && facts_.median_depth <= kFarthestScene) return;
-    throw InputError(fmt::format(
-        "{}: median depth of the first images is {:.3g} m with depth_factor {} of {}, expected {} "
-        "to {} m: the factor must be the raw value of one metre",
-        listing_.name, facts_.median_depth, listing_.camera.depth_factor,
-        listing_.calibration_source, kNearestScene, kFarthestScene));
   }
 
   SequenceListing listing_;
