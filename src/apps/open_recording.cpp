@@ -2,18 +2,37 @@
 // Copyright 2026 The dxslam authors
 #include "apps/open_recording.h"
 
+#include <fmt/format.h>
+
 #include "apps/console.h"
+#include "apps/stoppable_sequence.h"
 #include "apps/usage.h"
+#include "core/error.h"
+#include "io/sources/open_source.h"
 
 namespace dxslam::apps {
 
 std::unique_ptr<RgbdSequence> open_recording(const std::string& path,
                                              const SequenceOptions& options) {
+  if (is_live_source(path)) {
+    throw InputError(path +
+                     ": a camera, expected a recording; `dxslam record` makes one of a camera");
+  }
   std::unique_ptr<RgbdSequence> recording = open_sequence(path, options);
   for (const std::string& note : recording->facts().notes) {
     warn("{}{}", note.starts_with(path) ? "" : path + ": ", note);
   }
   return recording;
+}
+
+std::unique_ptr<ImageSource> open_images(const std::string& source, const SequenceOptions& options,
+                                         const ImageSelection& selection) {
+  if (is_live_source(source)) return open_live_source(source, options, selection);
+  return make_image_source(stoppable(open_recording(source, options)), selection);
+}
+
+std::string source_help() {
+  return fmt::format("{}. Or a camera: {}", recording_help(), known_live_sources());
 }
 
 std::string recording_help() { return "Recording: " + known_recordings(); }

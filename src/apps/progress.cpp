@@ -23,7 +23,8 @@ Progress::Progress(std::string title, std::size_t total)
 void Progress::update(std::size_t done, const std::string& state) {
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - last_).count();
-  if (done < total_ && since < (terminal_ ? kTerminalInterval : kPlainInterval)) return;
+  if ((done < total_ || total_ == 0) && since < (terminal_ ? kTerminalInterval : kPlainInterval))
+    return;
   last_ = now;
   drawn_ = true;
   draw(done, state, std::chrono::duration<double>(now - start_).count());
@@ -33,8 +34,9 @@ void Progress::draw(std::size_t done, const std::string& state, double elapsed) 
   const double rate = elapsed > 0.0 ? static_cast<double>(done) / elapsed : 0.0;
   const double left =
       rate > 0.0 ? static_cast<double>(total_ - std::min(done, total_)) / rate : 0.0;
-  const std::string text =
-      fmt::format("{}/{}  {:.1f}/s  {}  {:.0f} s left", done, total_, rate, state, left);
+  const std::string text = total_ == 0 ? fmt::format("{}  {:.1f}/s  {}", done, rate, state)
+                                       : fmt::format("{}/{}  {:.1f}/s  {}  {:.0f} s left", done,
+                                                     total_, rate, state, left);
   if (!terminal_) {
     draw_text(fmt::format("{}: {}\n", title_, text));
     return;

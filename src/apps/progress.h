@@ -12,6 +12,7 @@ namespace dxslam::apps {
 /// plain line now and then. One thread at a time.
 class Progress {
  public:
+  /// `total` 0: nobody knows how many there will be.
   Progress(std::string title, std::size_t total);
   /// `state` is a word or two, e.g. "tracking" or "lost".
   void update(std::size_t done, const std::string& state);

@@ -166,6 +166,7 @@ void Session::run(const std::function<void()>& feed) {
 }
 
 std::optional<RgbdImage> Session::next(ImageSource& source, std::vector<SkippedFrame>& failed) {
+  const std::stop_callback ends(stop_token(), [&source] { source.stop(); });
   while (!stop_requested()) {
     const std::size_t told = source.skipped().size();
     std::optional<SkippedFrame> failure;

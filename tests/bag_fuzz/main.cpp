@@ -117,8 +117,9 @@ class Mutation {
 // True for a recording that was read to its end. Throws InputError for one that is refused.
 bool use(const std::string& file) {
   const RecordingInfo info = inspect_recording(file, {});
-  if (info.sequence == nullptr) throw InputError(info.problem);
-  for (std::size_t i = 0; i < info.sequence->size(); ++i) info.sequence->read(i);
+  if (info.origin == nullptr) throw InputError(info.problem);
+  const std::unique_ptr<RgbdSequence> sequence = open_sequence(file);
+  for (std::size_t i = 0; i < sequence->size(); ++i) sequence->read(i);
   return true;
 }
 

@@ -54,9 +54,9 @@ void print_topics(const std::vector<TopicInfo>& topics) {
   if (others > 0) print("and {} topics of other things, which --json lists\n", others);
 }
 
-void print_camera(const RgbdSequence& sequence) {
-  const Camera& c = sequence.camera();
-  print("calibration from {}\n", sequence.facts().calibration_source);
+void print_camera(const ImageOrigin& origin) {
+  const Camera& c = origin.camera();
+  print("calibration from {}\n", origin.facts().calibration_source);
   print("  {}x{}, fx {:.2f}, fy {:.2f}, cx {:.2f}, cy {:.2f}\n", c.width, c.height, c.fx, c.fy,
         c.cx, c.cy);
   if (!c.has_distortion()) return print("  no distortion\n");
@@ -67,10 +67,10 @@ void print_camera(const RgbdSequence& sequence) {
   print("\n");
 }
 
-void print_depth(const RgbdSequence& sequence) {
-  const RecordingFacts& facts = sequence.facts();
+void print_depth(const ImageOrigin& origin) {
+  const RecordingFacts& facts = origin.facts();
   if (!facts.has_depth) return;
-  print("depth: {:g} raw units per metre", sequence.camera().depth_factor);
+  print("depth: {:g} raw units per metre", origin.camera().depth_factor);
   if (facts.depth_share == 0.0) return print(", no reading in the first images\n");
   print(", median {:.2f} m in the first images, {:.0f} % of their pixels\n", facts.median_depth,
         100.0 * facts.depth_share);
@@ -78,13 +78,13 @@ void print_depth(const RgbdSequence& sequence) {
 
 // Whether `dxslam run` can read it.
 bool is_usable(const RecordingInfo& info) {
-  return info.sequence != nullptr && info.sequence->facts().has_depth;
+  return info.origin != nullptr && info.origin->facts().has_depth;
 }
 
 // What a user may miss of a recording that can be read, one sentence each.
 std::vector<std::string> missing_of(const RecordingInfo& info) {
   std::vector<std::string> missing;
-  if (!info.sequence->facts().has_depth) {
+  if (!info.origin->facts().has_depth) {
     missing.emplace_back("depth images, which `dxslam run` needs");
   }
   if (!info.left_out.empty()) {
@@ -94,29 +94,33 @@ std::vector<std::string> missing_of(const RecordingInfo& info) {
   const ImageCheck& images = info.images;
   if (images.absent > 0) {
     missing.push_back(fmt::format("{} of {} images are not there; the first: {}", images.absent,
-                                  info.sequence->size(), images.first_absent));
+                                  info.frames.count, images.first_absent));
   }
   if (images.damaged > 0) {
     missing.push_back(fmt::format("{} of {} images looked at cannot be used; the first: {}",
                                   images.damaged, images.looked_at, images.first_damaged));
   }
+  if (info.dropped > 0) {
+    missing.push_back(fmt::format("{} images that came too fast", info.dropped));
+  }
   return missing;
 }
 
 void print_info(const InfoArguments& arguments, const RecordingInfo& info) {
-  print("{}: recording of format {}\n", arguments.source, info.format);
+  const bool is_camera = info.format == "camera";
+  print("{}: {}{}\n", arguments.source, is_camera ? "" : "recording of format ", info.format);
   print_topics(info.topics);
-  if (info.sequence == nullptr) return print("cannot be used: {}\n", info.problem);
-  const RgbdSequence& sequence = *info.sequence;
-  print("frames: {}{} depth, {:.1f} s from {:.6f} on{}\n", sequence.size(),
-        sequence.facts().has_depth ? " with" : " without", info.frames.last - info.frames.first,
+  if (info.origin == nullptr) return print("cannot be used: {}\n", info.problem);
+  const ImageOrigin& origin = *info.origin;
+  print("frames: {}{} depth, {:.1f} s from {:.6f} on{}\n", info.frames.count,
+        origin.facts().has_depth ? " with" : " without", info.frames.last - info.frames.first,
         info.frames.first, describe(info.frames));
-  print_camera(sequence);
-  print_depth(sequence);
-  print("true trajectory: {}\n", sequence.ground_truth().empty()
+  print_camera(origin);
+  print_depth(origin);
+  print("true trajectory: {}\n", origin.ground_truth().empty()
                                      ? "none"
-                                     : fmt::format("{} poses", sequence.ground_truth().size()));
-  for (const std::string& note : sequence.facts().notes) print("note: {}\n", note);
+                                     : fmt::format("{} poses", origin.ground_truth().size()));
+  for (const std::string& note : origin.facts().notes) print("note: {}\n", note);
   const std::vector<std::string> missing = missing_of(info);
   for (const std::string& what : missing) print("missing: {}\n", what);
   if (missing.empty()) print("missing: nothing\n");
@@ -137,16 +141,16 @@ Json info_json(const InfoArguments& arguments, const RecordingInfo& info) {
     json["topics"].push_back(std::move(row));
   }
   json["usable"] = is_usable(info);
-  if (info.sequence == nullptr) {
+  if (info.origin == nullptr) {
     json["problem"] = info.problem;
     return json;
   }
   json["missing"] = missing_of(info);
   json["frames"] = timing_json(info.frames);
-  json["frames"]["with_depth"] = info.sequence->facts().has_depth;
-  json.update(recording_json(*info.sequence));
-  json["true_poses"] = info.sequence->ground_truth().size();
-  json["notes"] = info.sequence->facts().notes;
+  json["frames"]["with_depth"] = info.origin->facts().has_depth;
+  json.update(recording_json(*info.origin));
+  json["true_poses"] = info.origin->ground_truth().size();
+  json["notes"] = info.origin->facts().notes;
   return json;
 }
 
@@ -167,8 +171,9 @@ void tell(const InfoArguments& arguments) {
 void add_info_command(CLI::App& app) {
   const auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand(
-      "info", "tell what a recording holds: streams, rates, gaps, calibration, what is missing");
-  command->add_option("SOURCE", arguments->source, recording_help())->required();
+      "info",
+      "tell what a recording or camera gives: streams, rates, gaps, calibration, what is missing");
+  command->add_option("SOURCE", arguments->source, source_help())->required();
   add_reader_options(*command, arguments->reader);
   command->add_option("--json", arguments->json, "also write it to a JSON file");
   command->callback([arguments] { tell(*arguments); });

@@ -150,17 +150,20 @@ int end(const ImageOrigin& sequence, Session& session, OnlineTrajectory& online,
   return steps.report(record.interrupted ? kInterrupted : code);
 }
 
-std::unique_ptr<ImageSource> open_source(const RunArguments& arguments) {
-  auto recording = stoppable(open_recording(arguments.sequence, arguments.settings.reader));
-  require_depth(*recording);
-  if (arguments.realtime) require_pace(*recording);
-  return make_image_source(std::move(recording), {arguments.settings.stride, arguments.max_frames});
+std::unique_ptr<ImageSource> open_images_of(const RunArguments& arguments) {
+  const SequenceOptions& options = arguments.settings.reader;
+  const ImageSelection selection{arguments.settings.stride, arguments.max_frames};
+  if (!arguments.realtime) return open_images(arguments.sequence, options, selection);
+  auto recording = stoppable(open_recording(arguments.sequence, options));  // a camera has a pace
+  require_pace(*recording);
+  return make_image_source(std::move(recording), selection);
 }
 
 int run(const RunArguments& arguments) {
   const Stopwatch startup;
   Session session(arguments.settings);
-  const std::unique_ptr<ImageSource> source = open_source(arguments);
+  const std::unique_ptr<ImageSource> source = open_images_of(arguments);
+  require_depth(*source);
   session.claim_targets();
   OnlineTrajectory online(session.folder(), "trajectory.txt");
   Progress progress("frames", source->planned().value_or(0));
@@ -184,6 +187,7 @@ int run(const RunArguments& arguments) {
   session.run([&] { feed(arguments, *source, session, record); });
   record.wall_s = wall.ms() / 1000.0;
   record.frames_offered = source->passed();
+  record.frames_dropped += source->dropped();
   progress.finish();
   return end(*source, session, online, record);
 }
@@ -194,7 +198,7 @@ void add_run_command(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   RunSettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand("run", "Track a recording and build its map");
-  command->add_option("SEQUENCE", arguments->sequence, recording_help())->required();
+  command->add_option("SEQUENCE", arguments->sequence, source_help())->required();
   command->add_option("--out", settings.out, "Folder for trajectory, map and summary");
   add_run_options(*command, settings);
   command->add_option("--association", settings.reader.association,

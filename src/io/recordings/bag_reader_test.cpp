@@ -374,7 +374,7 @@ TEST(RecordingInfo, TellsTopicsFramesAndGaps) {
   EXPECT_NEAR(info.frames.rate, 10.0, 1e-3);
   EXPECT_EQ(info.frames.gaps, 1U);
   EXPECT_NEAR(info.frames.longest_gap, 0.7, 1e-6);
-  EXPECT_NE(info.sequence, nullptr);
+  EXPECT_NE(info.origin, nullptr);
 }
 
 TEST(RecordingInfo, SaysWhyABagCannotBeUsed) {
@@ -383,7 +383,7 @@ TEST(RecordingInfo, SaysWhyABagCannotBeUsed) {
   bag.add_image("/image", "color", kStart, "bgr8", test_color());
   const RecordingInfo info = inspect_recording(folder.write("a.bag", bag.bytes()), {});
   EXPECT_EQ(info.topics.size(), 1U);
-  EXPECT_EQ(info.sequence, nullptr);
+  EXPECT_EQ(info.origin, nullptr);
   EXPECT_THAT(info.problem, HasSubstr("no calibration"));
 }
 

@@ -12,6 +12,7 @@
 #include "io/bags/bag_file.h"
 #include "io/bags/bag_streams.h"
 #include "io/recordings/sequence_formats.h"
+#include "io/sources/open_source.h"
 
 namespace dxslam {
 namespace {
@@ -72,6 +73,24 @@ void read_some(const std::vector<std::size_t>& present, RgbdSequence& sequence,
   }
 }
 
+RecordingInfo inspect_camera(const std::string& name, const SequenceOptions& options) {
+  constexpr double kLong = 3.0;  // seconds
+  std::unique_ptr<ImageSource> source = open_live_source(name, options);
+  RecordingInfo info;
+  info.format = "camera";
+  std::vector<double> stamps;
+  while (const std::optional<RgbdImage> image = source->next()) {
+    stamps.push_back(image->stamp);
+    if (stamps.back() - stamps.front() > kLong) break;
+  }
+  source->stop();
+  info.frames = timing_of(std::move(stamps));
+  info.dropped = source->dropped();
+  info.left_out = source->skipped();
+  info.origin = std::move(source);
+  return info;
+}
+
 }  // namespace
 
 StreamTiming timing_of(std::vector<double> stamps) {
@@ -95,26 +114,27 @@ StreamTiming timing_of(std::vector<double> stamps) {
 }
 
 RecordingInfo inspect_recording(const std::string& path, const SequenceOptions& options) {
+  if (is_live_source(path)) return inspect_camera(path, options);
   RecordingInfo info;
   info.format = recognised_format(path, options.format);
   if (info.format == "bag") info.topics = topics_of(path);
   std::vector<std::size_t> present;
+  std::unique_ptr<RgbdSequence> sequence;
   try {
     SequenceListing listing = list_sequence(path, options);
     present = look_for_files(listing, info.images);
-    info.sequence = make_sequence(std::move(listing));
+    sequence = make_sequence(std::move(listing));
   } catch (const InputError& e) {
     if (info.topics.empty()) throw;
     info.problem = e.what();
     return info;
   }
   std::vector<double> stamps;
-  for (std::size_t i = 0; i < info.sequence->size(); ++i) {
-    stamps.push_back(info.sequence->stamp(i));
-  }
+  for (std::size_t i = 0; i < sequence->size(); ++i) stamps.push_back(sequence->stamp(i));
   info.frames = timing_of(std::move(stamps));
-  info.left_out = info.sequence->skipped();
-  read_some(present, *info.sequence, info.images);
+  info.left_out = sequence->skipped();
+  read_some(present, *sequence, info.images);
+  info.origin = std::move(sequence);
   return info;
 }
 

@@ -43,16 +43,19 @@ struct ImageCheck {
 
 /// What `dxslam info` tells of a recording.
 struct RecordingInfo {
-  std::string format;             ///< one of sequence_formats()
+  std::string format;             ///< one of sequence_formats(), or "camera"
   std::vector<TopicInfo> topics;  ///< of a bag, by name
-  /// The recording; none where it cannot be used, and `problem` then says why in one sentence.
-  std::unique_ptr<RgbdSequence> sequence;
+  /// The recording or camera; none where it cannot be used, and `problem` then says why in one
+  /// sentence.
+  std::unique_ptr<ImageOrigin> origin;
   std::string problem;
-  StreamTiming frames;                 ///< of the sequence
+  StreamTiming frames;                 ///< of a camera, those of three seconds
+  std::size_t dropped = 0;             ///< of these, which came too fast
   std::vector<SkippedFrame> left_out;  ///< while it was opened
   ImageCheck images;
 };
-/// Throws InputError for what is no recording at all, or a bag that cannot be read.
+/// Throws InputError for what is no recording at all, a bag that cannot be read, or a camera that
+/// cannot be used.
 RecordingInfo inspect_recording(const std::string& path, const SequenceOptions& options);
 
 }  // namespace dxslam

@@ -224,11 +224,11 @@ std::string recognised_format(const std::string& path, const std::string& wanted
   return find_recording(path, wanted).format->name;
 }
 
-void require_depth(const RgbdSequence& sequence) {
-  if (sequence.facts().has_depth) return;
+void require_depth(const ImageOrigin& origin) {
+  if (origin.facts().has_depth) return;
   throw InputError(fmt::format(
       "{}: the recording has no depth images, expected one beside each colour image (RGB-D)",
-      sequence.name()));
+      origin.name()));
 }
 
 TrajectoryFile load_ground_truth(const std::string& file_or_folder, const std::string& format) {

@@ -69,8 +69,8 @@ std::unique_ptr<RgbdSequence> open_sequence(const std::string& path,
 /// format. Throws InputError for what is no recording.
 std::string recognised_format(const std::string& path, const std::string& wanted = "auto");
 
-/// Throws InputError for a recording in which no frame has a depth image: for whatever needs depth.
-void require_depth(const RgbdSequence& sequence);
+/// Throws InputError for images none of which has depth: for whatever needs depth.
+void require_depth(const ImageOrigin& origin);
 
 /// The true trajectory: of a file (`format` as in read_trajectory_file) or, for a folder, of the
 /// recording in it or of EuRoC's state_groundtruth_estimate0. Throws InputError if there is none.
