@@ -26,7 +26,9 @@
 #include "io/formats/options_yaml.h"
 #include "io/formats/trajectory_file.h"
 #include "io/primitives/image_file.h"
+#include "io/recordings/recording_writer.h"
 #include "io/recordings/sequence_reader.h"
+#include "io/sources/open_source.h"
 
 // The system itself.
 #include "slam/event_reader.h"

@@ -31,7 +31,7 @@ RESTRICTED = [
     (r"tiff", r"(?!)", "Debian's libtiff links the GPL (docs/dependencies.md)"),
     (r"io/image_codecs/", r"io/image_codecs/|io/primitives/image_file\.cpp", "io/primitives/image_file.h is their interface"),
     (r"sqlite3\.h", r"io/bags/sqlite_bag\.cpp", "one file knows SQLite"),
-    (r"(zstd|lz4frame|bzlib)\.h", r"io/bags/decompress\.cpp", "one file knows how chunks are packed"),
+    (r"(zstd|lz4frame|bzlib)\.h", r"io/bags/(de)?compress\.cpp", "one file knows how chunks are packed"),
     (r"io/bags/", r"io/(bags|recordings)/", "recordings are opened by io/recordings"),
     (r"opencv2/highgui", r"(?!)", "nothing opens windows"),
     (r"(ros|rclcpp|cv_bridge|sensor_msgs)/", r"(?!)", "the library does not know ROS"),

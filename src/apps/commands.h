@@ -21,6 +21,7 @@ enum ExitCode : int {
 // that ends with a code of its own throws CLI::RuntimeError(code).
 void add_run_command(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_record_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_synth_command(CLI::App& app);
 void add_config_command(CLI::App& app);

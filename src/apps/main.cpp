@@ -20,6 +20,7 @@ void add_commands(CLI::App& app) {
   add_run_command(app);
   add_lifelong_command(app);
   add_info_command(app);
+  add_record_command(app);
   add_eval_command(app);
   add_synth_command(app);
   add_config_command(app);

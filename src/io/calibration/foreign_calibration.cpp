@@ -21,7 +21,7 @@ struct RosLens {
   const LensModel* model;
 };
 
-// The names of ROS, Kalibr and librealsense.
+// The names of ROS, Kalibr and librealsense; for each model that of ROS first.
 constexpr std::array<RosLens, 9> kRosLenses = {{{"plumb_bob", &kRadialTangential},
                                                 {"Brown Conrady", &kRadialTangential},
                                                 {"Modified Brown Conrady", &kRadialTangential},
@@ -199,6 +199,13 @@ Lens lens_from_ros(const std::string& distortion_model, const std::vector<double
   }
   throw InputError(fmt::format("{}: distortion model {}, expected one of {}", where,
                                in_quotes(distortion_model), fmt::join(names, ", ")));
+}
+
+std::string ros_lens_name(const LensModel& model) {
+  for (const RosLens& known : kRosLenses) {
+    if (known.model == &model) return known.name;
+  }
+  return model.name;
 }
 
 std::optional<Camera> parse_foreign_calibration(const std::string& yaml, const std::string& where) {

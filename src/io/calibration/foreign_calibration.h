@@ -23,4 +23,7 @@ std::optional<Camera> parse_foreign_calibration(const std::string& yaml, const s
 Lens lens_from_ros(const std::string& distortion_model, const std::vector<double>& coefficients,
                    const std::string& where);
 
+/// What ROS calls a lens model; ours where it knows none.
+std::string ros_lens_name(const LensModel& model);
+
 }  // namespace dxslam

@@ -14,10 +14,12 @@
 #include "io/bags/bag_streams.h"
 #include "io/bags/realsense_bag.h"
 #include "io/bags/ros_picture.h"
+#include "io/calibration/calibration.h"
 #include "io/calibration/foreign_calibration.h"
 #include "io/primitives/limits.h"
 #include "io/recordings/inverse_distortion.h"
 #include "io/recordings/nearest_in_time.h"
+#include "io/recordings/recording_formats.h"
 #include "io/recordings/sequence_formats.h"
 
 namespace dxslam {
@@ -269,9 +271,24 @@ void register_depth(BagPictures& pictures, SequenceListing& listing) {
   use_depth_camera(depth_camera_of(lens, *color_from_depth), listing);
 }
 
+// What `dxslam record` wrote beside the images: more than a camera_info can say.
+bool use_own_calibration(BagPictures& pictures, SequenceListing& listing) {
+  BagFile& bag = pictures.bag();
+  for (const BagEntry& entry : bag.entries()) {
+    const BagTopic& topic = bag.topics()[entry.topic];
+    if (topic.name != kCalibrationTopic || topic.type != "std_msgs/String") continue;
+    const std::string text = read_ros_string(bag.read(entry), topic.encoding, topic.name);
+    listing.camera = parse_camera(text, topic.name);
+    listing.calibration_source = topic.name;
+    return true;
+  }
+  return false;
+}
+
 void find_calibration(BagPictures& pictures, const std::string& path,
                       const SequenceOptions& options, SequenceListing& listing) {
-  if (!use_explicit_calibration(path, options, listing)) {
+  if (!use_explicit_calibration(path, options, listing) &&
+      !use_own_calibration(pictures, listing)) {
     const auto found = camera_info_of(pictures.bag(), pictures.color());
     const std::string realsense = realsense_stream(pictures.color().name);
     if (!found && (options.needs_calibration || pictures.color().size.empty())) {
