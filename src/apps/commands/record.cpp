@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
+#include <exception>
 #include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
 
 #include "apps/commands.h"
 #include "apps/console.h"
@@ -9,7 +13,6 @@
 #include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/recording_report.h"
-#include "apps/session.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "core/image_source.h"
@@ -25,9 +28,23 @@ struct RecordArguments {
   ImageSelection selection;
 };
 
+// Nothing at the end and after a stop. What cannot be read costs this image alone.
+std::optional<RgbdImage> next_image(ImageSource& source, std::vector<SkippedFrame>& failed) {
+  const std::stop_callback ends(stop_token(), [&source] { source.stop(); });
+  for (;;) {
+    try {
+      return source.next();
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::exception& e) {
+      failed.push_back(skipped_for(source.index(), e));
+    }
+  }
+}
+
 void write_images(ImageSource& source, RecordingWriter& writer, std::vector<SkippedFrame>& failed) {
   Progress progress("images", source.planned().value_or(0));
-  while (const std::optional<RgbdImage> image = Session::next(source, failed)) {
+  while (const std::optional<RgbdImage> image = next_image(source, failed)) {
     writer.add(*image);
     progress.update(source.passed(), "recording");
   }
