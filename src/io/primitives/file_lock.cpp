@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <system_error>
 
 #include "core/error.h"
@@ -36,10 +37,14 @@ FileLock::FileLock(std::string path, const std::string& in_use) : path_(std::mov
       throw InputError(in_use);
     }
   } while (!same_file(file_, path_));
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  folder_ = ::open(folder.empty() ? "." : folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
 }
 
 FileLock::~FileLock() {
-  ::unlink(path_.c_str());  // before others can take it
+  const std::string name = std::filesystem::path(path_).filename().string();
+  ::unlinkat(folder_, name.c_str(), 0);  // before others can take it
+  ::close(folder_);
   ::close(file_);
 }
 

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* kLock = ".dxslam.lock";
 constexpr const char* kPrevious = "previous";
 constexpr const char* kOnTheWay = ".dxslam-previous";  // becomes kPrevious when all is in it
+constexpr const char* kReplaced = ".dxslam-replaced";  // was kPrevious, is being removed
 
 bool matches(const std::string& name, const std::vector<std::string>& patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
@@ -65,24 +66,35 @@ ResultFolder::ResultFolder(std::string folder, ResultFiles files)
   made_ = !fs::exists(folder_, error);
   make_folder(folder_);
   try {
-    lock_.emplace(file(kLock),
-                  fmt::format("output folder {} is in use by another run, expected a folder of its "
-                              "own for each",
-                              folder_));
+    take();
     require_usable();
-  } catch (const std::system_error& e) {
-    release();
-    throw InputError(
-        fmt::format("output folder {} cannot be written to: {}", folder_, e.code().message()));
   } catch (...) {
     release();
     throw;
   }
 }
 
+void ResultFolder::take() {
+  lock_.reset();
+  try {
+    lock_.emplace(file(kLock),
+                  fmt::format("output folder {} is in use by another run, expected a folder of its "
+                              "own for each",
+                              folder_));
+  } catch (const std::system_error& e) {
+    throw InputError(
+        fmt::format("output folder {} cannot be written to: {}", folder_, e.code().message()));
+  }
+}
+
+// `name` is relative to the folder.
 const ResultFile* ResultFolder::find(const std::string& name) const {
+  std::string leaf = name;
+  for (const std::string& folder : files_.folders) {
+    if (name.starts_with(folder + "/")) leaf = name.substr(folder.size() + 1);
+  }
   const auto found = std::find_if(files_.all.begin(), files_.all.end(), [&](const auto& result) {
-    return ::fnmatch(result.name.c_str(), name.c_str(), FNM_PATHNAME) == 0;
+    return ::fnmatch(result.name.c_str(), leaf.c_str(), FNM_PATHNAME) == 0;
   });
   return found == files_.all.end() ? nullptr : &*found;
 }
@@ -98,27 +110,37 @@ void ResultFolder::require_result(const std::string& path, const ResultFile& res
   require_kind_or_nothing(path, result.kind);
 }
 
-void ResultFolder::require_usable() const {
+// Of a folder of last results, or, `within` it, of one in that.
+void ResultFolder::require_nothing_else(const std::string& folder,
+                                        const std::string& within) const {
   std::error_code error;
-  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
-    const ResultFile* const result = find(it->path().filename().string());
-    if (result != nullptr) require_result(it->path().string(), *result);
+  for (fs::directory_iterator it(fs::path(folder) / within, error), end; !error && it != end;
+       it.increment(error)) {
+    const std::string name = (fs::path(within) / it->path().filename()).string();
+    std::error_code ignored;
+    if (std::count(files_.folders.begin(), files_.folders.end(), name) > 0 &&
+        fs::is_directory(it->symlink_status(ignored))) {
+      require_nothing_else(folder, name);
+    } else if (find(name) == nullptr) {
+      throw InputError(
+          fmt::format("{}: is no result, expected nothing but the last results in that folder",
+                      it->path().string()));
+    }
   }
-  for (const char* name : {kPrevious, kOnTheWay}) {
+}
+
+void ResultFolder::require_usable() const {
+  for (const std::string& name : results_in(folder_)) require_result(file(name), *find(name));
+  for (const char* name : {kPrevious, kOnTheWay, kReplaced}) {
+    std::error_code error;
     const fs::file_status status = fs::symlink_status(file(name), error);
     if (fs::exists(status) && !fs::is_directory(status)) {
       throw InputError(fmt::format(
           "{}: is no folder, expected one for the last results or nothing there", file(name)));
     }
-    for (fs::directory_iterator it(file(name), error), end; !error && it != end;
-         it.increment(error)) {
-      const std::string path = it->path().string();
-      const ResultFile* const result = find(it->path().filename().string());
-      if (result == nullptr) {
-        throw InputError(fmt::format(
-            "{}: is no result, expected nothing but the last results in that folder", path));
-      }
-      require_result(path, *result);
+    require_nothing_else(file(name), "");
+    for (const std::string& result : results_in(file(name))) {
+      require_result((fs::path(file(name)) / result).string(), *find(result));
     }
   }
 }
@@ -129,9 +151,10 @@ bool ResultFolder::claims(const std::string& path) const {
   if (error) return false;
   const fs::path target = canonical_target(path);
   const std::string inside = target.lexically_relative(folder).string();
-  for (const char* name : {kPrevious, kOnTheWay}) {
+  for (const char* name : {kPrevious, kOnTheWay, kReplaced}) {
     if (inside == name || inside.starts_with(std::string(name) + "/")) return true;
   }
+  if (std::count(files_.folders.begin(), files_.folders.end(), inside) > 0) return true;
   return inside == "." || inside == kLock || find(inside) != nullptr;
 }
 
@@ -146,15 +169,28 @@ std::string ResultFolder::file(const std::string& name) const {
   return (fs::path(folder_) / name).string();
 }
 
+// Whatever has the name of a result, relative to `folder`.
 std::vector<std::string> ResultFolder::results_in(const std::string& folder) const {
   std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::string name = it->path().filename().string();
-    std::error_code ignored;
-    if (find(name) != nullptr && !it->is_directory(ignored)) names.push_back(std::move(name));
+  std::vector<std::string> places = files_.folders;
+  places.emplace_back();
+  for (const std::string& place : places) {
+    std::error_code error;
+    for (fs::directory_iterator it(fs::path(folder) / place, error), end; !error && it != end;
+         it.increment(error)) {
+      std::string name = (fs::path(place) / it->path().filename()).string();
+      if (find(name) != nullptr) names.push_back(std::move(name));
+    }
   }
   return names;
+}
+
+void ResultFolder::remove_results_in(const std::string& folder) const {
+  for (const std::string& name : results_in(folder)) {
+    if (std::error_code error; fs::is_directory(fs::path(folder) / name, error)) continue;
+    remove_or_throw(fs::path(folder) / name);
+  }
+  for (const std::string& name : files_.folders) ::rmdir((fs::path(folder) / name).c_str());
 }
 
 bool ResultFolder::has_content() const {
@@ -170,13 +206,22 @@ bool ResultFolder::whole() const {
   return std::any_of(names.begin(), names.end(), is_last) && has_content();
 }
 
+void ResultFolder::make_again() {
+  std::error_code error;
+  if (fs::exists(folder_, error)) return;
+  make_folder(folder_);
+  take();
+}
+
 void ResultFolder::begin() {
+  make_again();
   if (begun_) return;
   std::error_code error;
+  remove_results_in(file(kReplaced));
+  fs::remove(file(kReplaced), error);
   const bool under_way = fs::exists(file(kOnTheWay), error);
-  const bool kept = fs::exists(file(kPrevious), error) ? whole() : has_content();
-  if (!under_way && !kept) {
-    for (const std::string& name : results_in(folder_)) remove_or_throw(file(name));
+  if (!under_way && (!kept().empty() || !has_content())) {
+    remove_results_in(folder_);
   } else {
     move_aside();
   }
@@ -184,29 +229,37 @@ void ResultFolder::begin() {
 }
 
 void ResultFolder::move_aside() {
-  const std::vector<std::string> names = results_in(folder_);
   std::error_code error;
-  if (names.empty() && !fs::exists(file(kOnTheWay), error)) return;
   if (!fs::exists(file(kOnTheWay), error)) {
     fs::create_directory(file(kOnTheWay), error);
     if (error) fail(folder_, error.message());
   }
-  for (const std::string& name : names) {
-    move_or_throw(file(name), fs::path(file(kOnTheWay)) / name);
+  for (const std::string& name : results_in(folder_)) {
+    if (fs::is_directory(file(name), error)) continue;
+    const fs::path target = fs::path(file(kOnTheWay)) / name;
+    fs::create_directories(target.parent_path(), error);  // its failure is that of the move
+    move_or_throw(file(name), target);
   }
-  for (const std::string& name : results_in(file(kPrevious))) {
-    remove_or_throw(fs::path(file(kPrevious)) / name);
-  }
+  for (const std::string& name : files_.folders) ::rmdir(file(name).c_str());  // where it is empty
+  remove_results_in(file(kPrevious));
   move_or_throw(file(kOnTheWay), file(kPrevious));  // an empty folder there is replaced
 }
 
+std::string ResultFolder::kept() const {
+  return results_in(file(kPrevious)).empty() ? std::string() : file(kPrevious);
+}
+
+// By one step, after which they count no more: a kill in the middle must not leave a part of them.
 void ResultFolder::finish() {
   if (!begun_ || !whole()) return;
   std::error_code error;
-  for (const std::string& name : results_in(file(kPrevious))) {
-    fs::remove(fs::path(file(kPrevious)) / name, error);
+  fs::rename(file(kPrevious), file(kReplaced), error);
+  if (error) return;
+  try {
+    remove_results_in(file(kReplaced));
+  } catch (const InputError&) {  // the next run does it
   }
-  fs::remove(file(kPrevious), error);
+  fs::remove(file(kReplaced), error);
 }
 
 }  // namespace dxslam

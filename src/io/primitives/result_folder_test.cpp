@@ -102,6 +102,71 @@ TEST(ResultFolder, ResultsWithoutContentDoNotReplaceThoseWith) {
   }
 }
 
+TEST(ResultFolder, KeepsTheLastResultsUntilARunEndsWell) {
+  const TestFolder folder;
+  write_results(folder, "first", true);
+  for (int stopped = 0; stopped < 2; ++stopped) {  // whole, but of fewer frames
+    ResultFolder results(folder.path(), run_files());
+    EXPECT_EQ(results.kept(), stopped == 0 ? "" : folder / "previous");
+    results.begin();
+    write_file_atomically(results.file("trajectory.txt"), "stopped");
+    write_file_atomically(results.file("summary.json"), "stopped");
+    EXPECT_EQ(results.kept(), folder / "previous");
+  }
+  EXPECT_EQ(folder.read("trajectory.txt"), "stopped");
+  EXPECT_EQ(files_in(folder / "previous"), (Names{"trajectory.txt", "summary.json", "map_1.txt"}));
+  EXPECT_EQ(folder.read("previous/trajectory.txt"), "first");
+  write_results(folder, "second");
+  EXPECT_FALSE(fs::exists(folder / "previous"));
+}
+
+TEST(ResultFolder, HoldsResultsInFoldersOfItsOwn) {
+  const TestFolder folder;
+  ResultFiles files = run_files();
+  files.folders = {"a", "b"};
+  const auto write_all = [&](const std::string& text, bool ends_well) {
+    ResultFolder results(folder.path(), files);
+    results.begin();
+    EXPECT_FALSE(fs::exists(folder / "b/trajectory.txt"));
+    for (const char* name :
+         {"b/trajectory.txt", "b/summary.json", "trajectory.txt", "summary.json"}) {
+      make_folder((fs::path(results.file(name))).parent_path().string());
+      write_file_atomically(results.file(name), text);
+    }
+    if (ends_well) results.finish();
+  };
+  folder.write("a/notes.txt", "mine");
+  write_all("first", true);
+  write_all("second", false);
+  EXPECT_EQ(folder.read("previous/b/trajectory.txt"), "first");
+  EXPECT_EQ(folder.read("b/trajectory.txt"), "second");
+  write_all("third", true);
+  EXPECT_FALSE(fs::exists(folder / "previous"));
+  EXPECT_EQ(folder.read("b/summary.json"), "third");
+  EXPECT_EQ(folder.read("a/notes.txt"), "mine");
+  EXPECT_TRUE(ResultFolder(folder.path(), files).claims(folder / "b/map_1.txt"));
+  folder.write("b/trajectory.txt", "precious");
+  expect_input_error([&] { ResultFolder(folder.path(), files); }, {"b/trajectory.txt"});
+}
+
+TEST(ResultFolder, IsMadeAgainWhereItWasRemovedOrMoved) {
+  const TestFolder folder;
+  const std::string out = folder / "out";
+  {
+    ResultFolder results(out, run_files());
+    results.begin();
+    fs::remove_all(out);
+    results.begin();
+    write_file_atomically(results.file("summary.json"), "{}");
+    fs::rename(out, folder / "moved");
+    results.begin();
+    write_file_atomically(results.file("summary.json"), "{}");
+    expect_input_error([&] { ResultFolder(out, run_files()); }, {"in use by another run"});
+  }
+  EXPECT_EQ(files_in(out), (Names{"summary.json"}));
+  EXPECT_EQ(files_in(folder / "moved"), (Names{"summary.json"}));  // and no lock
+}
+
 // Killed at any moment, the last results are whole: in place, in `previous`, or, while they are
 // moved, in two folders of which the next run makes one.
 TEST(ResultFolder, SurvivesAKillAtAnyTime) {
