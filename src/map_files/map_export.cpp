@@ -15,6 +15,7 @@
 #include "io/formats/ply_file.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/output_file.h"
+#include "io/primitives/picture_mark.h"
 
 namespace dxslam {
 namespace {
@@ -27,12 +28,7 @@ constexpr const char* kCameras = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
 constexpr const char* kImages = "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n";
 constexpr const char* kPoints = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n";
 
-// A JPEG with a comment, by which the pictures written here are told from a user's photos.
-constexpr std::string_view kJpegBegin = "\xFF\xD8";
-constexpr std::string_view kMarkedJpegBegin{
-    "\xFF\xD8\xFF\xFE\x00\x08"
-    "dxslam",
-    12};
+constexpr const char* kSoftware = "dxslam";  // wrote the pictures
 
 double seen_share(const MapPoint& p) {
   return std::min(1.0, static_cast<double>(p.observations.size()) / kOftenSeen);
@@ -79,12 +75,8 @@ bool write_thumbnail(const std::filesystem::path& folder, const StoredMap& store
   const std::string& picture = stored.thumbnails[id];
   make_folder(folder.string());
   const std::string path = (folder / name).replace_extension(".jpg").string();
-  require_kind_or_nothing(
-      path, kind_by_beginning("a picture of `dxslam map`", {std::string(kMarkedJpegBegin)}));
-  write_file_atomically(path,
-                        picture.starts_with(kJpegBegin)
-                            ? std::string(kMarkedJpegBegin) + picture.substr(kJpegBegin.size())
-                            : picture);
+  require_kind_or_nothing(path, marked_picture_kind("a picture of `dxslam map`", kSoftware));
+  write_file_atomically(path, mark_picture(picture, kSoftware));
   return true;
 }
 

@@ -15,10 +15,13 @@
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
 #include "io/primitives/image_file.h"
+#include "io/primitives/picture_mark.h"
 #include "matching/descriptor_matching.h"
 
 namespace dxslam::apps {
 namespace {
+
+constexpr const char* kSoftware = "dxslam match";
 
 struct MatchArguments {
   FeatureArguments extractor;
@@ -34,7 +37,7 @@ cv::Point2f position(const Features& features, int index) {
   return {keypoint.x, keypoint.y};
 }
 
-/// One flag a match: within `threshold` pixels of the homography that most matches agree on.
+/// One flag per match: within `threshold` pixels of the homography that most matches agree on.
 std::vector<char> find_inliers(const Features& a, const Features& b,
                                const std::vector<Match>& matches, double threshold) {
   std::vector<char> inlier(matches.size(), 0);
@@ -95,7 +98,8 @@ cv::Mat draw(const cv::Mat& first, const cv::Mat& second, const Features& a, con
 
 void match(const MatchArguments& arguments) {
   CommandFiles({arguments.first, arguments.second})
-      .writes("--out", arguments.picture, picture_kind());
+      .writes("--out", arguments.picture,
+              marked_picture_kind("a picture of `dxslam match`", kSoftware));
   const auto extractor = make_extractor(arguments.extractor);
   const cv::Mat first = read_image(arguments.first, 0.0);
   const cv::Mat second = read_image(arguments.second, arguments.low_light);
@@ -109,7 +113,8 @@ void match(const MatchArguments& arguments) {
         extractor->name(), a.size(), b.size(), matches.size(), inliers);
   if (!arguments.picture.empty()) {
     const cv::Mat picture = draw(first, second, a, b, matches, inlier);
-    write_file_atomically(arguments.picture, encode_image(arguments.picture, picture));
+    write_file_atomically(arguments.picture,
+                          mark_picture(encode_image(arguments.picture, picture), kSoftware));
   }
 }
 

@@ -129,8 +129,6 @@ std::string encode_image(const std::string& path, const cv::Mat& image) {
   refuse(path, "no kind of image that can be written, expected a name that ends in .png or .jpg");
 }
 
-FileKind picture_kind() { return {"a picture", begins_as_image, {".png", ".jpg", ".jpeg"}}; }
-
 bool has_image_ending(const std::filesystem::path& path) {
   static constexpr std::array<std::string_view, 8> kEndings = {".png", ".jpg", ".jpeg", ".bmp",
                                                                ".pgm", ".ppm", ".tif",  ".tiff"};

@@ -8,8 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "io/primitives/output_file.h"
-
 namespace dxslam {
 
 // Reading of image files that may be broken: PNG, JPEG, BMP, PGM, PPM, TIFF and EXR, told apart by
@@ -44,8 +42,6 @@ cv::Mat decode_depth_image(std::string_view bytes, const std::string& where,
 /// The bytes of a PNG or JPEG (quality 95) file, as the ending of `path` says, of an image that is
 /// CV_8UC1, CV_8UC3 (BGR) or, for PNG, CV_16UC1. Throws InputError for other endings.
 std::string encode_image(const std::string& path, const cv::Mat& image);
-/// Pictures, under names that encode_image() takes.
-FileKind picture_kind();
 /// CV_8UC1 or CV_8UC3 (BGR); `quality` 1 to 100.
 std::string encode_jpeg(const cv::Mat& image, int quality);
 
