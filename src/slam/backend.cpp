@@ -13,9 +13,10 @@ namespace dxslam {
 namespace {
 
 LoopSearch make_search(const SystemOptions& options, const FeatureExtractor& extractor) {
-  if (!options.close_loops) return {{}, 1.0, "", {}};
+  if (!options.close_loops) return {{}, 1.0, "", "", {}};
   return {options.loop_detection, options.loop_relaxation,
-          find_vocabulary(options.vocabulary, extractor.name()), extractor.traits()};
+          find_vocabulary(options.vocabulary, extractor.name()), extractor.name(),
+          extractor.traits()};
 }
 
 }  // namespace

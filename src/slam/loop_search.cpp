@@ -52,15 +52,10 @@ std::unordered_set<KeyframeId> tied_to(const Map& map, KeyframeId keyframe) {
 }  // namespace
 
 LoopSearch::LoopSearch(const LoopOptions& options, double relaxation, const std::string& vocabulary,
-                       const DescriptorTraits& traits) {
+                       const std::string& features, const DescriptorTraits& traits) {
   if (!vocabulary.empty()) {
     vocabulary_ = Vocabulary::load(vocabulary);
-    if (vocabulary_->binary() != traits.binary || vocabulary_->dimension() != traits.dimension) {
-      throw InputError(fmt::format(
-          "{}: is a vocabulary of {} {} a descriptor, expected {} {} as the features have them",
-          vocabulary, vocabulary_->dimension(), vocabulary_->binary() ? "bytes" : "floats",
-          traits.dimension, traits.binary ? "bytes" : "floats"));
-    }
+    require_words_of(*vocabulary_, vocabulary, features, traits.binary, traits.dimension);
   }
   method_ = narrowed_method(options.method, vocabulary_.has_value(), traits);
   if (method_ == "none") return;

@@ -21,9 +21,9 @@ class LoopSearch {
   /// `relaxation` loosens the thresholds of `options`. Takes what is there: words with a vocabulary
   /// that fits the descriptors, global descriptors where the extractor has them; the method of
   /// `options` is narrowed accordingly. Throws InputError if the vocabulary is given but cannot be
-  /// read or does not fit.
+  /// read or is not of the extractor `features`, whose descriptors are of `traits`.
   LoopSearch(const LoopOptions& options, double relaxation, const std::string& vocabulary,
-             const DescriptorTraits& traits);
+             const std::string& features, const DescriptorTraits& traits);
 
   /// False where there is neither: no loop can be found.
   bool usable() const { return detector_.has_value(); }

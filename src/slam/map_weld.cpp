@@ -17,7 +17,7 @@ std::size_t weld_components(StoredMap& stored) {
   Map& map = stored.map;
   const MapHeader& header = stored.header;
   LoopSearch search(LoopOptions(), SystemOptions().loop_relaxation,
-                    find_vocabulary("auto", header.extractor), header.traits);
+                    find_vocabulary("auto", header.extractor), header.extractor, header.traits);
   if (!search.usable()) return 0;
   LoopCloser closer(header.traits, LoopCloserOptions(), true);
   const std::vector<LoopEdge> known = loop_edges(stored.loops);

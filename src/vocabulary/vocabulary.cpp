@@ -93,6 +93,7 @@ BowVector Vocabulary::transform(const cv::Mat& descriptors) const {
   return make_bow_vector(std::move(entries));
 }
 
+const std::string& Vocabulary::name() const { return image_->layout.name; }
 std::size_t Vocabulary::word_count() const { return image_->words; }
 WordId Vocabulary::word_limit() const { return image_->word_limit; }
 bool Vocabulary::binary() const { return image_->layout.binary; }
@@ -124,6 +125,42 @@ VocabularyInfo Vocabulary::info() const {
     first = false;
   });
   return info;
+}
+
+std::string trained_name(const std::string& features, const std::string& method) {
+  return features + " " + method;
+}
+
+namespace {
+
+// What the name says that it was trained on; empty where it says nothing.
+std::string features_in_name(const std::string& name) {
+  for (const char* method : {"incremental", "kmeans"}) {
+    const std::string ending = trained_name("", method);
+    if (name.ends_with(ending)) return name.substr(0, name.size() - ending.size());
+  }
+  return {};
+}
+
+// Two that detect otherwise and describe alike.
+std::string descriptors_of(const std::string& features) {
+  return features == "opencv_orb" ? "orb" : features;
+}
+
+}  // namespace
+
+void require_words_of(const Vocabulary& vocabulary, const std::string& path,
+                      const std::string& features, bool binary, int dimension) {
+  const auto kind = [](bool of_bytes) { return of_bytes ? "bytes" : "floats"; };
+  if (vocabulary.binary() != binary || vocabulary.dimension() != dimension) {
+    throw InputError(fmt::format(
+        "{}: is a vocabulary of {} {} per descriptor, expected {} {} as `{}` has them", path,
+        vocabulary.dimension(), kind(vocabulary.binary()), dimension, kind(binary), features));
+  }
+  const std::string trained_on = features_in_name(vocabulary.name());
+  if (trained_on.empty() || descriptors_of(trained_on) == descriptors_of(features)) return;
+  throw InputError(fmt::format("{}: was trained on features `{}`, expected a vocabulary of `{}`",
+                               path, trained_on, features));
 }
 
 }  // namespace dxslam

@@ -66,8 +66,9 @@ class Vocabulary {
   /// True if rows of `descriptors` can be quantised: kind and dimension agree, or there are none.
   bool fits(const cv::Mat& descriptors) const;
 
-  std::size_t word_count() const;  ///< leaves
-  WordId word_limit() const;       ///< all word ids are below it; word_count() in own files
+  const std::string& name() const;  ///< as the file has it; may be empty
+  std::size_t word_count() const;   ///< leaves
+  WordId word_limit() const;        ///< all word ids are below it; word_count() in own files
   bool binary() const;
   int dimension() const;         ///< floats, or bytes where binary
   int descriptor_bytes() const;  ///< of one descriptor
@@ -79,5 +80,15 @@ class Vocabulary {
   explicit Vocabulary(std::shared_ptr<const FbowImage> image);
   std::shared_ptr<const FbowImage> image_;
 };
+
+/// The name of a vocabulary that was trained on the descriptors of an extractor by a method
+/// (training_options.h).
+std::string trained_name(const std::string& features, const std::string& method);
+
+/// Throws InputError unless the words of the vocabulary, read from the file `path`, are of
+/// descriptors of this kind, and, where its name says what features it was trained on, of those of
+/// the extractor `features`.
+void require_words_of(const Vocabulary& vocabulary, const std::string& path,
+                      const std::string& features, bool binary, int dimension);
 
 }  // namespace dxslam
