@@ -13,7 +13,9 @@ namespace {
 
 void finish(LoopCurve& curve) {
   curve.confidence_at_100_precision = std::numeric_limits<double>::infinity();
-  double reached = 0.0;
+  double reached = curve.queries_with_loop > 0 ? 0.0 : std::nan("");
+  curve.recall_at_100_precision = reached;
+  curve.average_precision = reached;
   for (const PrecisionRecall& point : curve.points) {
     curve.average_precision += point.precision * (point.recall - reached);
     reached = point.recall;
@@ -44,9 +46,8 @@ LoopCurve evaluate_loops(std::vector<LoopGuess> guesses, const LoopTruth& truth,
     if (!last_of_its_kind || judged == 0) continue;
     point.confidence = guesses[i].confidence;
     point.precision = static_cast<double>(point.right) / static_cast<double>(judged);
-    point.recall = queries_with_loop == 0
-                       ? 0.0
-                       : static_cast<double>(point.right) / static_cast<double>(queries_with_loop);
+    // 0 / 0 where there is no true loop.
+    point.recall = static_cast<double>(point.right) / static_cast<double>(queries_with_loop);
     curve.points.push_back(point);
   }
   finish(curve);

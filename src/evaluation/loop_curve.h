@@ -36,10 +36,11 @@ struct LoopCurve {
   double average_precision = 0.0;
 };
 
-/// Judges at most one guess a query. A guess is right if its frames show the same place; one of an
-/// unclear pair counts as neither. Recall is the share of `queries_with_loop` (number of queries
-/// that have a true loop) with a right guess. Throws ContractError for a guess beyond the truth, a
-/// confidence that is not finite, or more right guesses than queries with a loop.
+/// Judges at most one guess per query. A guess is right if its frames show the same place; one of
+/// an unclear pair counts as neither. Recall is the share of `queries_with_loop` (number of queries
+/// that have a true loop) with a right guess; where there is none, all that recall is part of is
+/// not a number. Throws ContractError for a guess beyond the truth, a confidence that is not
+/// finite, or more right guesses than queries with a loop.
 LoopCurve evaluate_loops(std::vector<LoopGuess> guesses, const LoopTruth& truth,
                          std::size_t queries_with_loop);
 
@@ -52,7 +53,7 @@ struct NamedCurve {
   LoopCurve curve;
 };
 
-/// A self-contained SVG picture of precision over recall, one line a curve, with a legend that
+/// A self-contained SVG picture of precision over recall, one line per curve, with a legend that
 /// names each with its recall at 100 % precision.
 std::string draw_loop_curves_svg(const std::vector<NamedCurve>& curves, const std::string& title,
                                  const std::string& subtitle = "");

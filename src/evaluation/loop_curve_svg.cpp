@@ -57,7 +57,7 @@ std::string draw_axes() {
 }
 
 std::string draw_curve(const LoopCurve& curve, const char* color) {
-  if (curve.points.empty()) return {};
+  if (curve.points.empty() || curve.queries_with_loop == 0) return {};
   // From recall 0 at the precision of the surest guesses.
   double last_x = px(0.0);
   double last_y = py(curve.points.front().precision);
@@ -99,10 +99,13 @@ std::string draw_loop_curves_svg(const std::vector<NamedCurve>& curves, const st
     out += fmt::format("<path d=\"M{:.1f} {:.1f}h22\" stroke=\"{}\" stroke-width=\"3\"/>\n", x,
                        y - 4, color);
     out += text_at(x + 30, y, named.name);
-    out += text_at(x + 30, y + 16,
-                   fmt::format("recall {:.3f} at 100 % precision, AP {:.3f}",
-                               named.curve.recall_at_100_precision, named.curve.average_precision),
-                   "fill=\"#5b6672\" font-size=\"11\"");
+    const bool judged = named.curve.queries_with_loop > 0;
+    out += text_at(
+        x + 30, y + 16,
+        judged ? fmt::format("recall {:.3f} at 100 % precision, AP {:.3f}",
+                             named.curve.recall_at_100_precision, named.curve.average_precision)
+               : "no true loop",
+        "fill=\"#5b6672\" font-size=\"11\"");
     y += 42;
   }
   return out + "</svg>\n";

@@ -69,6 +69,18 @@ TEST(LoopCurve, CountsQueriesWithALoopAmongTheReferences) {
   EXPECT_EQ(count_queries_with_loop(truth, {0, 1}, {5, 6}), 0U);  // they come later
 }
 
+TEST(LoopCurve, HasNoRecallWithoutATrueLoop) {
+  const LoopCurve curve = evaluate_loops({{9, 1, 0.9}}, small_truth(), 0);
+  ASSERT_EQ(curve.points.size(), 1U);
+  EXPECT_EQ(curve.points.front().precision, 0.0);
+  EXPECT_TRUE(std::isnan(curve.points.front().recall));
+  EXPECT_TRUE(std::isnan(curve.recall_at_100_precision));
+  EXPECT_TRUE(std::isnan(curve.average_precision));
+  const std::string svg = draw_loop_curves_svg({{"a", curve}}, "title");
+  EXPECT_THAT(svg, testing::HasSubstr("no true loop"));
+  EXPECT_THAT(svg, testing::Not(testing::HasSubstr("nan")));
+}
+
 TEST(LoopCurve, DrawsEachCurveWithItsName) {
   const LoopCurve curve = evaluate_loops({{5, 0, 0.9}, {7, 0, 0.5}}, small_truth(), 4);
   const std::string svg = draw_loop_curves_svg({{"a<b", curve}, {"empty", {}}}, "title");
