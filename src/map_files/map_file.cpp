@@ -258,7 +258,7 @@ void require_same_features(const MapHeader& map, const MapHeader& current,
   }
   const bool other_weights = same_descriptors && map.extractor == current.extractor;
   throw InputError(
-      fmt::format("{}: the map was made with features {}, in use are {}{}; their descriptors "
+      fmt::format("{}: the map was made with features {}, in use is {}{}; their descriptors "
                   "cannot be compared",
                   where, features_of(map), features_of(current),
                   other_weights ? " of another training (the weights' hashes differ)" : ""));

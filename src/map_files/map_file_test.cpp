@@ -381,7 +381,7 @@ TEST(MapHeader, OfAnotherNetworkIsRefused) {
   current.model_hash.clear();
   EXPECT_NO_THROW(require_same_features(map, current, "m.dxmap")) << "unknown weights";
   expect_input_error([&] { require_same_features(map, sample_header(true), "m"); },
-                     {"`sample` (32 floats), in use are `orb` (32 bytes)"});
+                     {"`sample` (32 floats), in use is `orb` (32 bytes)"});
 }
 
 // Every lens, and readings of a camera that the header has no room for.

@@ -31,7 +31,7 @@ struct BundleScene {
   BundleProblem problem;  ///< perturbed
   std::vector<SE3> true_world_from_camera;
   std::vector<Eigen::Vector3d> true_points;
-  std::vector<char> outlier;  ///< one an observation
+  std::vector<char> outlier;  ///< one per observation
 };
 
 class BundleSceneMaker {

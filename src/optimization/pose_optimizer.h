@@ -29,7 +29,7 @@ struct PoseOptimizerOptions {
   static void describe(Self& self, Visitor& visit) {
     visit("rounds", self.rounds, {1, 20}, "rounds",
           "re-weighting rounds; outliers are set aside after each");
-    visit("iterations", self.iterations, {1, 100}, "steps", "Levenberg-Marquardt steps a round");
+    visit("iterations", self.iterations, {1, 100}, "steps", "Levenberg-Marquardt steps per round");
     visit("chi2_pixel", self.chi2_pixel, {0.1, 100}, "sigma^2",
           "gate of an observation without depth");
     visit("chi2_depth", self.chi2_depth, {0.1, 100}, "sigma^2",
@@ -45,7 +45,7 @@ struct PoseOptimizerOptions {
 struct PoseReport {
   bool success = false;      ///< enough inliers and a finite pose
   SE3 world_from_camera;     ///< the start where not successful
-  std::vector<char> inlier;  ///< one an observation
+  std::vector<char> inlier;  ///< one per observation
   int inliers = 0;
   double rms_pixels = 0.0;  ///< over inliers, pixel part of the residual
   /// Inverse covariance of the left perturbation (rho, phi) of camera_from_world, at the solution,

@@ -56,7 +56,7 @@ bool has_rival(const Nearest& nearest, const GroupPoints& group, float ratio, bo
 }  // namespace
 
 GroupPoints gather_group_points(const Map& map, const std::vector<KeyframeId>& keyframes,
-                                int descriptors_a_point, int max_rows, float max_distance) {
+                                int descriptors_per_point, int max_rows, float max_distance) {
   GroupPoints group;
   std::unordered_map<PointId, std::vector<int>> rows_of;
   int rows = 0;
@@ -70,7 +70,7 @@ GroupPoints gather_group_points(const Map& map, const std::vector<KeyframeId>& k
       if (keyframe.points[k] == kNoId) continue;
       if (rows >= max_rows) break;
       std::vector<int>& known = rows_of[keyframe.points[k]];
-      if (static_cast<int>(known.size()) >= descriptors_a_point) continue;
+      if (static_cast<int>(known.size()) >= descriptors_per_point) continue;
       const int keypoint = static_cast<int>(k);
       const bool alike = std::any_of(known.begin(), known.end(), [&](int row) {
         return descriptor_distance(gathered, row, descriptors, keypoint) < max_distance / 3.0F;

@@ -19,10 +19,10 @@ struct GroupPoints {
 };
 
 /// Gathers the points of the keyframes, in their order. A point's descriptors are those of its
-/// observations in these keyframes, up to `descriptors_a_point`; of alike ones (nearer than a
+/// observations in these keyframes, up to `descriptors_per_point`; of alike ones (nearer than a
 /// third of `max_distance`) the first stays. Not more than `max_rows` rows.
 GroupPoints gather_group_points(const Map& map, const std::vector<KeyframeId>& keyframes,
-                                int descriptors_a_point, int max_rows, float max_distance);
+                                int descriptors_per_point, int max_rows, float max_distance);
 
 /// Keypoint `keypoint` may be an image of point `point` (index into GroupPoints::ids).
 struct GroupMatch {

@@ -70,7 +70,7 @@ struct RelocalizationOptions {
   int min_shared = 20;
   int max_keypoints = 700;
   int max_group_rows = 2500;
-  int descriptors_a_point = 2;
+  int descriptors_per_point = 2;
   double match_ratio = 0.95;
   int min_matches = 15;
   double wide_radius = 10.0;
@@ -96,7 +96,7 @@ struct RelocalizationOptions {
           "keypoints of the frame that are matched without a pose");
     visit("max_group_rows", self.max_group_rows, {10, 1000000}, "descriptors",
           "most descriptors of a group");
-    visit("descriptors_a_point", self.descriptors_a_point, {1, 100}, "descriptors",
+    visit("descriptors_per_point", self.descriptors_per_point, {1, 100}, "descriptors",
           "most descriptors of a point of a group");
     visit("match_ratio", self.match_ratio, {0.1, 1}, "",
           "nearest to second nearest descriptor distance, of different points");

@@ -50,7 +50,7 @@ class GroupAttempt {
     RelocalizationReport report;
     report.component = group.component;
     const GroupPoints points =
-        gather_group_points(map_, group.keyframes, options_.descriptors_a_point,
+        gather_group_points(map_, group.keyframes, options_.descriptors_per_point,
                             options_.max_group_rows, traits_.max_distance);
     const std::vector<GroupMatch> matches =
         match_group(frame_.descriptors, options_.max_keypoints, points, traits_.max_distance,
