@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <stop_token>
 #include <utility>
 
 #include "apps/console.h"
+#include "apps/process.h"
 #include "apps/statistics_json.h"
 #include "core/error.h"
 #include "evaluation/ate.h"
@@ -59,6 +61,29 @@ std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function
   } catch (const std::exception& e) {
     return skipped_for(index, e);
   }
+}
+
+std::optional<RgbdImage> next_image(ImageSource& source, std::vector<SkippedFrame>& failed,
+                                    const std::function<void(const SkippedFrame&)>& tell) {
+  const std::stop_callback ends(stop_token(), [&source] { source.stop(); });
+  while (!stop_requested()) {
+    const std::size_t told = source.skipped().size();
+    std::optional<SkippedFrame> failure;
+    std::optional<RgbdImage> image;
+    try {
+      image = source.next();
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::exception& e) {
+      failure = skipped_for(source.index(), e);
+    }
+    const std::vector<SkippedFrame>& skipped = source.skipped();
+    for (std::size_t i = told; tell && i < skipped.size(); ++i) tell(skipped[i]);
+    if (!failure) return stop_requested() ? std::nullopt : std::move(image);
+    if (tell) tell(*failure);
+    failed.push_back(std::move(*failure));
+  }
+  return std::nullopt;
 }
 
 std::vector<SkippedFrame> all_skipped(const ImageOrigin& recording,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/image_source.h"
 #include "core/sequence.h"
 #include "core/trajectory.h"
 #include "evaluation/statistics.h"
@@ -22,6 +23,11 @@ SkippedFrame skipped_for(std::size_t index, const std::exception& error);
 /// Calls `work`, which reads an image and works on it. What it throws concerns this image alone:
 /// returned is why it was skipped.
 std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function<void()>& work);
+/// The next image of a source; nothing at the end and after a stop. What cannot be read costs this
+/// image alone, and is added to `failed`; that no image can come any more is thrown. `tell`, where
+/// given, gets all that could not be read.
+std::optional<RgbdImage> next_image(ImageSource& source, std::vector<SkippedFrame>& failed,
+                                    const std::function<void(const SkippedFrame&)>& tell = {});
 /// Frames that could not be read, and `failed` ones, in order.
 std::vector<SkippedFrame> all_skipped(const ImageOrigin& recording,
                                       const std::vector<SkippedFrame>& failed);

@@ -166,25 +166,8 @@ void Session::run(const std::function<void()>& feed) {
 }
 
 std::optional<RgbdImage> Session::next(ImageSource& source, std::vector<SkippedFrame>& failed) {
-  const std::stop_callback ends(stop_token(), [&source] { source.stop(); });
-  while (!stop_requested()) {
-    const std::size_t told = source.skipped().size();
-    std::optional<SkippedFrame> failure;
-    std::optional<RgbdImage> image;
-    try {
-      image = source.next();
-    } catch (const InputError&) {
-      throw;
-    } catch (const std::exception& e) {
-      failure = skipped_for(source.index(), e);
-    }
-    const std::vector<SkippedFrame>& skipped = source.skipped();
-    for (std::size_t i = told; i < skipped.size(); ++i) tell_unreadable(skipped[i]);
-    if (!failure) return stop_requested() ? std::nullopt : std::move(image);
-    tell_unreadable(*failure);
-    failed.push_back(std::move(*failure));
-  }
-  return std::nullopt;
+  return next_image(source, failed,
+                    [this](const SkippedFrame& skipped) { tell_unreadable(skipped); });
 }
 
 bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,

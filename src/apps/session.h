@@ -55,8 +55,7 @@ class Session {
   /// wrong inside ends them, but costs no output: see rethrow_error(). Does nothing without a
   /// system.
   void run(const std::function<void()>& feed);
-  /// In `feed`, the next image; nothing at the end and after a stop. What cannot be read costs this
-  /// image alone, and is added to `failed`; that no image can come any more is thrown.
+  /// In `feed`: next_image(), told to those who receive messages.
   std::optional<RgbdImage> next(ImageSource& source, std::vector<SkippedFrame>& failed);
   /// In `feed`, once per image: calls `work`, which processes it. What that throws costs this image
   /// alone, and is added to `failed`. Returns whether further images are wanted: not after a stop,
