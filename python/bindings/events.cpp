@@ -12,6 +12,7 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -345,7 +346,31 @@ void bind_subscription(nb::module_& m) {
                    "Events lost so far. Gaps in Event.number show where.");
 }
 
+// The kind of event that a class of Python stands for.
+template <class... Events>
+EventKinds kind_of(const nb::handle wanted, std::type_identity<std::variant<Events...>>) {
+  EventKinds kind = EventKinds::none();
+  const auto is = [&](const nb::handle type, EventKinds its) {
+    if (!wanted.is(type)) return false;
+    kind = its;
+    return true;
+  };
+  if (!(is(nb::type<EventOf<Events>>(), EventKinds::of<Events>()) || ...)) {
+    throw nb::type_error("kinds must be classes of events, e.g. dxslam.FrameTracked");
+  }
+  return kind;
+}
+
 }  // namespace
+
+EventKinds kinds_of(const std::optional<nb::iterable>& classes) {
+  if (!classes) return EventKinds::all();
+  EventKinds kinds = EventKinds::none();
+  for (const nb::handle wanted : *classes) {
+    kinds = kinds | kind_of(wanted, std::type_identity<Event>());
+  }
+  return kinds;
+}
 
 nb::object to_event(const MessagePtr& message) {
   return std::visit(

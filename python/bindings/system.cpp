@@ -183,6 +183,18 @@ nb::object PySystem::whole_map() {
       std::make_shared<Message>(Message{0, whole->map_version, Event(std::move(whole->map))}));
 }
 
+SubscriptionPtr PySystem::subscribe(std::size_t capacity,
+                                    const std::optional<nb::iterable>& kinds) {
+  const EventKinds wanted = kinds_of(kinds);
+  const nb::gil_scoped_release release;
+  return system_->subscribe(capacity, wanted);
+}
+
+std::optional<AllPoses> PySystem::all_poses() {
+  const nb::gil_scoped_release release;
+  return system_->all_poses();
+}
+
 const System& PySystem::finished() const {
   require(finished_, "results of a System can be read after finish()");
   return *system_;

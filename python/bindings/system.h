@@ -61,7 +61,8 @@ class PySystem {
   /// `adjust`: the whole map once more, if so configured.
   void finish(bool adjust);
 
-  SubscriptionPtr subscribe(std::size_t capacity) { return system_->subscribe(capacity); }
+  SubscriptionPtr subscribe(std::size_t capacity, const std::optional<nb::iterable>& kinds);
+  std::optional<AllPoses> all_poses();
   nb::object whole_map();
   std::shared_ptr<MapHandle> map() const;
   /// Throws ContractError before finish().

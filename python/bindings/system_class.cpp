@@ -9,6 +9,7 @@
 
 #include <optional>
 
+#include "bindings/arrays.h"
 #include "bindings/bindings.h"
 #include "bindings/system.h"
 #include "bindings/trajectory.h"
@@ -104,8 +105,14 @@ void bind_input(nb::class_<PySystem>& system) {
 void bind_events_of(nb::class_<PySystem>& system) {
   system
       .def("subscribe", &PySystem::subscribe, nb::arg("capacity") = 1024,
-           nb::call_guard<nb::gil_scoped_release>(),
-           "Events from now on, of which at most `capacity` wait to be read. Any thread.")
+           nb::arg("kinds") = nb::none(),
+           nb::sig("def subscribe(self, capacity: int = 1024, kinds: "
+                   "collections.abc.Iterable[type[Event]] | None = None) -> Subscription"),
+           "Events from now on, or those of some classes, of which at most `capacity` wait to be "
+           "read. Any thread.")
+      .def("all_poses", &PySystem::all_poses,
+           "Poses of all images tracked so far, as the map has them now. None once a change of the "
+           "map has failed halfway. Waits while the map is worked on. Any thread.")
       .def("whole_map", &PySystem::whole_map, nb::sig("def whole_map(self) -> MapChanged | None"),
            "All of the map as it is now, as added, with its map_version; events of later versions "
            "change it. None once a change has failed halfway. Waits while the map is worked on. "
@@ -123,6 +130,35 @@ void bind_events_of(nb::class_<PySystem>& system) {
 }
 
 void bind_summaries(nb::module_& m) {
+  nb::class_<AllPoses>(m, "AllPoses", "Where the images so far were, by the map at one moment.")
+      .def_ro("map_version", &AllPoses::map_version, "Changes up to this one are in it.")
+      .def_prop_ro(
+          "indices",
+          [](const AllPoses& all) {
+            return column_array<std::int64_t>(all.frames,
+                                              [](const FramePose& f) { return f.index; });
+          },
+          kOwned, "(N,) int64: of the images.")
+      .def_prop_ro(
+          "stamps",
+          [](const AllPoses& all) {
+            return column_array<double>(all.frames, [](const FramePose& f) { return f.stamp; });
+          },
+          kOwned, "(N,) float64, seconds.")
+      .def_prop_ro(
+          "components",
+          [](const AllPoses& all) {
+            return column_array<std::uint32_t>(all.frames,
+                                               [](const FramePose& f) { return f.component; });
+          },
+          kOwned, "(N,) uint32: in whose world each pose is.")
+      .def_prop_ro(
+          "world_from_camera",
+          [](const AllPoses& all) {
+            return poses_array(all.frames, [](const FramePose& f) { return f.world_from_camera; });
+          },
+          kOwned, "(N, 4, 4) float64, metres.")
+      .def("__len__", [](const AllPoses& all) { return all.frames.size(); });
   nb::class_<ComponentSummary>(m, "ComponentSummary", "One map of several, each of its own world.")
       .def_ro("component", &ComponentSummary::component, "Its number.")
       .def_ro("keyframes", &ComponentSummary::keyframes, "How many it has.")

@@ -22,8 +22,8 @@ except ImportError as _error:
     from . import _dxslam
 from . import evaluate
 from ._dxslam import (
-    AteReport, Camera, ComponentSummary, ContractError, Error, ErrorStatistics, Event, Extractor,
-    Features, Frames, FrameTracked, Image, ImageSkipped, InputError, Keyframe, KeyframeMapped,
+    AllPoses, AteReport, Camera, ComponentSummary, ContractError, Error, ErrorStatistics, Event,
+    Extractor, Features, Frames, FrameTracked, Image, ImageSkipped, InputError, Keyframe, KeyframeMapped,
     KeyframePoses, LoopClosed, LoopFound, LoopRefused, LossReason, Map, MapChanged, MappingReport,
     MapSaved, MapsJoined, PlaceFound, PointPositions, RecordingBegun, RecordingEnded, Relocalization,
     RpeReport, RunFailed, RunFinished, SkipReason, Source, SourceIterator, StageSummary, Subscription,

@@ -255,6 +255,24 @@ class Events(unittest.TestCase):
         begun = [e.recording for e in events if isinstance(e, dxslam.RecordingBegun)]
         self.assertEqual(begun, [0, 1])
 
+    def test_kinds(self):
+        with recording.system() as slam:
+            events = slam.subscribe(kinds=[dxslam.FrameTracked])
+            for image in recording.images()[:3]:
+                slam.process(*image)
+            for wrong in ([dxslam.Event], [dxslam.System], ["FrameTracked"], [3]):
+                with self.assertRaisesRegex(TypeError, "classes of events"):
+                    slam.subscribe(kinds=wrong)
+        self.assertEqual([event.frame.index for event in events], [0, 1, 2])
+
+    def test_all_poses(self):
+        slam, _, _ = recording.finished()
+        everything = slam.all_poses()
+        self.assertEqual(everything.stamps.tolist(), slam.trajectory().stamps.tolist())
+        self.assertTrue(np.allclose(everything.world_from_camera,
+                                    slam.trajectory().world_from_camera))
+        self.assertEqual(everything.map_version, slam.whole_map().map_version)
+
     def test_whole_map(self):
         with recording.system() as slam:
             for image in recording.images()[:5]:
