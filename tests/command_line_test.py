@@ -43,6 +43,7 @@ class CommandLine(Made):
         self.refuse("loops", self.recording, "--method", "orb-bow", "--ground-truth", "poses",
                     "--window", "-1", names=["--window"])
         self.refuse("map", "export", "m", "--ply", "p", "--component", "-1", names=["-1"])
+        self.refuse("eval", "rpe", "a", "b", "--delta", "0.5", names=["--delta", "0.5"])
 
     def test_the_mistyped_word_is_named(self):
         self.refuse("rnu", self.recording, names=["'rnu'", "run"])
@@ -68,7 +69,11 @@ class CommandLine(Made):
                 ["vocab", "train", self.recording, "--out", map_, "--features", "foo"],
                 ["loops", "x", "--ground-truth", "poses", "--method", "foo"],
                 ["loops", "x", "--method", "orb-bow", "--ground-truth", "poses", "--eye", "foo"],
-                ["synth", map_, "--scene", "foo"], ["synth", map_, "--factor", "foo"],
+                ["features", "a.png", "--precision", "foo"], ["match", "a", "b", "--precision", "foo"],
+                ["relocalize", map_, self.recording, "--precision", "foo"],
+                ["bench", "features", self.recording, "--precision", "foo"],
+                ["vocab", "train", self.recording, "--out", map_, "--precision", "foo"],
+                ["synth", map_, "--lens", "foo"], ["synth", map_, "--scene", "foo"], ["synth", map_, "--factor", "foo"],
                 ["synth", map_, "--factor", "people=foo"], ["config", "dump", "--camera", "foo"],
                 ["eval", "ate", "a", "b", "--format", "foo"], ["eval", "ate", "a", "b", "--plot", "foo.png"],
                 ["eval", "openloris", "a", "b", "--plot", "foo.PDF"]):
@@ -104,7 +109,7 @@ class CommandLine(Made):
                       ["lifelong", self.recording, "--out", self.folder / name],
                       ["relocalize", name, self.recording], ["eval", "ate", name, name],
                       ["eval", "openloris", name, name], ["map", "info", name],
-                      ["map", "check", name], ["map", "merge", name, name, "--out", name],
+                      ["map", "check", name], ["map", "merge", name, name, "--out", "o" + name],
                       ["features", name], ["match", name, name], ["bench", "features", name],
                       ["vocab", "info", name], ["vocab", "train", name, "--out", "v"],
                       ["vocab", "convert", name, "v"], ["synth", self.folder / name],
@@ -118,6 +123,14 @@ class CommandLine(Made):
 
 
 class UnusedOptions(unittest.TestCase):
+    def test_helps_begin_with_small_letters(self):
+        for words in ([], ["run"], ["lifelong"], ["info"], ["eval", "ate"], ["eval", "rpe"],
+                      ["eval", "openloris"], ["synth"], ["config", "dump"], ["features"], ["match"],
+                      ["bench", "features"], ["vocab", "train"], ["vocab", "convert"], ["loops"],
+                      ["map", "export"], ["map", "merge"], ["relocalize"], ["record"]):
+            for line in program(*words, "--help").stdout.splitlines():
+                self.assertNotRegex(line, r"^  \S.*  +[A-Z][a-z]", words)
+
     def test_options_without_use_are_refused(self):
         common = ["loops", "/nonexistent", "--ground-truth", "truth.txt"]
         for options, named in (
@@ -129,6 +142,20 @@ class UnusedOptions(unittest.TestCase):
             done = program(*common, *options)
             self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
             self.assertIn(f"option {named} has no use here", done.stderr)
+        for words, named in (
+                (["map", "export", "m", "--component", "0", "--colmap", "c"], "--component"),
+                (["synth", "/nonexistent/s", "--factor-seed", "1"], "--factor-seed"),
+                (["vocab", "train", "r", "--out", "v", "--method", "kmeans", "--matched-per-image", "5"],
+                 "--matched-per-image"),
+                (["config", "dump", "--camera", "tum_fr1", "--all"], "--all"),
+                (["run", "r", "--no-loop-closing", "--vocabulary", "v.fbow"], "--vocabulary"),
+                (["run", "r", "--map-in", "m", "--map-out", "n", "--mode", "localization",
+                  "--thumbnails"], "--thumbnails"),
+                (["lifelong", "r", "--out", "o", "--map-in", "m", "--map-out", "n", "--mode",
+                  "localization", "--autosave", "5"], "--autosave")):
+            done = program(*words)
+            self.assertEqual(done.returncode, BAD_INPUT, (words, done.stderr))
+            self.assertIn(f"{named} has no use", done.stderr)
         with tempfile.TemporaryDirectory(prefix="dxslam_unused_") as out:
             done = program("lifelong", "/nonexistent", "--low-light-in", "2", "--out", out)
         self.assertEqual(done.returncode, BAD_INPUT)

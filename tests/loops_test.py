@@ -67,6 +67,21 @@ class Loops(Recorded):
             self.assertLess(int(row["match"]), 25)
         self.assertEqual(json.loads((out / "summary.json").read_text())["places"], 25)
 
+    def test_without_a_true_loop_there_is_no_recall(self):
+        matrix = self.folder / "none.txt"
+        rows = [["1" if (i, j) == (FRAMES - 1, 0) else "0" for j in range(FRAMES)] for i in range(FRAMES)]
+        matrix.write_text("\n".join(" ".join(row) for row in rows) + "\n")
+        out = self.folder / "no_loop"
+        done = self.succeed(self.loops("--out", out, "--max-frames", FRAMES // 2, truth=matrix))
+        self.assertIn("no query has a true loop", done.stderr)
+        self.assertNotIn("0.0000", done.stdout)
+        summary = json.loads((out / "summary.json").read_text())
+        for key in ("recall_at_100_precision", "average_precision"):
+            self.assertIsNone(summary[key])
+        self.assertFalse(summary["interrupted"])
+        rows = csv.DictReader((out / "pr.csv").read_text().splitlines())
+        self.assertEqual({row["recall"] for row in rows} | {""}, {""})
+
     def test_takes_plain_images_and_a_matrix(self):
         images = self.folder / "images_only"
         images.mkdir()

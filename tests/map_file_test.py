@@ -8,6 +8,7 @@ usage: map_file_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/d
 """
 import json
 import math
+import os
 import random
 import re
 import shutil
@@ -65,7 +66,7 @@ class Commands(Saved):
         text = self.succeed(dxslam("map", "check", self.first)).stdout
         self.assertRegex(text, r"checksums +right")
         self.assertRegex(text, r"behind camera 0 ")
-        self.assertRegex(text, r"1 groups of covisible keyframes in 1 components")
+        self.assertRegex(text, r"1 group of covisible keyframes in 1 component\n")
 
     def test_merged_maps_lie_side_by_side(self):
         out = self.folder / "merged.dxmap"
@@ -82,21 +83,24 @@ class Commands(Saved):
     def test_maps_of_one_place_are_joined(self):
         out = self.folder / "joined.dxmap"
         text = self.succeed(dxslam("map", "merge", self.first, self.second, "--out", out)).stdout
-        self.assertRegex(text, "in 1 components")
+        self.assertRegex(text, "in 1 component;")
         parts, joined = [self.info(file) for file in (self.first, self.second)], self.info(out)
         self.assertEqual(joined["keyframes"], sum(part["keyframes"] for part in parts))
         self.assertLess(joined["points"], sum(part["points"] for part in parts))
         self.assertGreater(joined["loops"], 0)
         self.assertLess(joined["reprojection_error_px"]["median"], 1.5)
         self.assertRegex(self.succeed(dxslam("map", "check", out)).stdout,
-                         "1 groups of covisible keyframes in 1 components")
+                         "1 group of covisible keyframes in 1 component\n")
 
-    def test_merging_onto_itself_is_safe(self):
-        out = self.folder / "self.dxmap"
+    def test_merging_onto_an_input_is_refused(self):
+        out, other = self.folder / "self.dxmap", self.folder / "other.dxmap"
         shutil.copy(self.second, out)
-        before = self.info(out)
-        self.succeed(dxslam("map", "merge", out, out, "--apart", "--out", out))
-        self.assertEqual(self.info(out)["keyframes"], 2 * before["keyframes"])
+        os.link(out, other)
+        before = out.read_bytes()
+        for name in (out, other):
+            self.refuse(dxslam("map", "merge", self.first, out, "--out", name), name,
+                        "an input of this command")
+        self.assertEqual(out.read_bytes(), before)
 
     def test_ply_holds_points_and_keyframes(self):
         ply = self.folder / "map.ply"

@@ -36,6 +36,11 @@ def names(folder):
     return {path.name for path in folder.iterdir()}
 
 
+def rows_of(file):
+    """Of a list: stamp and name."""
+    return [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
+
+
 def empty_png(bits):
     """A grey image of zeros."""
     def chunk(kind, data):
@@ -191,10 +196,10 @@ class LastResults(Outputs):
         self.ends(self.run_orb("--out", self.out), 0)
         self.assertEqual(names(self.out), RESULTS)
 
-    def start_slowly(self):
+    def start_slowly(self, *options):
         """A run that has begun to track when this returns."""
         process = subprocess.Popen([PROGRAM, "run", self.recording, "--features", "orb", "--out",
-                                    self.out, "--realtime"], stdout=subprocess.DEVNULL,
+                                    self.out, "--realtime", *options], stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -214,6 +219,20 @@ class LastResults(Outputs):
             self.assertLess(time.monotonic(), deadline, "no pose appeared")
             time.sleep(0.01)
         return process
+
+    def test_a_folder_that_is_moved_meanwhile(self):
+        maps = self.folder / "maps"
+        for there in (self.out, maps):
+            there.mkdir()
+        process = self.start_slowly("--map-out", maps / "m.dxmap")
+        for there in (self.out, maps):
+            there.rename(self.folder / f"old_{there.name}")
+        self.assertEqual(process.wait(TIMEOUT), 0)
+        self.assertEqual(names(self.out), RESULTS - {"trajectory_online.txt"})
+        self.assertGreater(len(poses(self.out / "trajectory.txt")), FRAMES // 2)
+        self.assertEqual(names(maps), {"m.dxmap"})
+        self.assertEqual(names(self.folder / "old_maps"), set())  # no lock
+        self.assertEqual(names(self.folder / "old_out"), {"trajectory.txt"})
 
     def test_two_runs_do_not_share_a_folder(self):
         process = self.start_slowly()
@@ -360,6 +379,7 @@ class InnerErrors(Outputs):
             self.folder / "m.dxmap")
         summary = self.summary()
         self.assertIn("frames that were skipped: ", said)
+        self.assertNotIn("OpenCV(", json.dumps(summary["skipped_frames"]))
         self.assertGreater(len(summary["skipped_frames"]), 0)
         self.assertIsNone(summary["error"])
         self.assertEqual(names(self.out), RESULTS)
@@ -394,6 +414,46 @@ class Told(Outputs):
         self.assertGreater(summary["depth_share"], 0.5)
         self.assertLess(summary["ate"]["rmse"], 0.1)
         self.assertAlmostEqual(summary["ate"]["sim3_scale"], 1.0, delta=0.1)
+
+    def test_frames_in_other_maps_count(self):
+        elsewhere = self.folder / "elsewhere"
+        self.prepare("synth", elsewhere, "--scene", "corridor", "--frames", FRAMES)
+        both = self.copy("both")
+        for name in ("rgb", "depth"):
+            lines = rows_of(both / f"{name}.txt")
+            last = float(lines[-1][0])
+            for stamp, file in rows_of(elsewhere / f"{name}.txt"):
+                shutil.copy(elsewhere / file, both / name / f"of_{pathlib.Path(file).name}")
+                lines.append([f"{last + 1 + float(stamp):.6f}", f"{name}/of_{pathlib.Path(file).name}"])
+            (both / f"{name}.txt").write_text("".join(f"{a} {b}\n" for a, b in lines))
+        (both / "groundtruth.txt").unlink()
+        config = self.folder / "soon.yaml"
+        config.write_text("new_map_after: 3\n")
+        done = self.ends(self.run_orb("--config", config, "--out", self.out, recording=both), 0,
+                         "in trajectory_mapN.txt")
+        rows = [len(poses(file)) for file in self.out.glob("trajectory*.txt")
+                if "online" not in file.name]
+        self.assertEqual(len(rows), 2)
+        self.assertGreater(min(rows), FRAMES // 2)
+        self.assertIn(f"{sum(rows)} of {2 * FRAMES} frames tracked in 2 maps", done.stdout)
+        self.assertEqual(self.summary()["tracked"], sum(rows))
+        self.assertAlmostEqual(self.summary()["tracked_share"], sum(rows) / (2 * FRAMES))
+
+    def test_images_that_were_left_out_count(self):
+        copy = self.copy("same")
+        lines = rows_of(copy / "rgb.txt")
+        lines[5][0] = lines[6][0] = lines[4][0]
+        (copy / "rgb.txt").write_text("".join(f"{stamp} {file}\n" for stamp, file in lines))
+        done = self.ends(self.run_orb("--out", self.out, recording=copy), 0)
+        self.assertIn(f" of {FRAMES} frames tracked", done.stdout)
+        self.assertEqual(self.summary()["frames"], FRAMES)
+        self.assertLessEqual(self.summary()["tracked"], FRAMES - 2)
+
+    def test_a_day_without_a_frame_is_told(self):
+        elsewhere = self.folder / "elsewhere"
+        self.prepare("synth", elsewhere, "--scene", "corridor", "--frames", 10)
+        self.ends(dxslam("lifelong", self.recording, elsewhere, "--features", "orb", "--out", self.out),
+                  0, "elsewhere: no frame was localized")
 
     def test_a_wrong_depth_factor_shows(self):
         copy = self.copy()

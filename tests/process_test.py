@@ -209,9 +209,11 @@ class Signals(Made):
             (cls.gap / name).write_text("\n".join(lines) + "\n")
 
     def start(self, *words, **options):
+        said = tempfile.TemporaryFile(dir=self.folder)
+        self.addCleanup(said.close)
         process = subprocess.Popen([PROGRAM, *map(str, words)], stdin=subprocess.DEVNULL,
-                                   **{"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL,
-                                      **options})
+                                   **{"stdout": subprocess.DEVNULL, "stderr": said, **options})
+        process.said = said
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         return process
@@ -249,6 +251,8 @@ class Signals(Made):
             time.sleep(0.05)
         self.assertEqual(process.wait(TIMEOUT), INTERRUPTED)
         self.assertLess(time.monotonic() - begun, SECONDS_TO_STOP)
+        process.said.seek(0)
+        self.assertEqual(process.said.read().count(b"stopped by a signal"), 1)
 
     def start_with_gap(self, out, **options):
         process = self.start("run", self.gap, "--features", "orb", "--realtime", "--out", out,
@@ -342,11 +346,15 @@ class Signals(Made):
 
     def test_relocalize(self):
         out = self.folder / "out"
-        process = self.start("relocalize", self.root / "m.dxmap", self.long, "--out", out)
+        command = ["relocalize", self.root / "m.dxmap"]
+        self.expect(program(*command, self.recording, "--stride", 10, "--out", out), SUCCESS)
+        before = contents(out)
+        process = self.start(*command, self.long, "--out", out)
         self.await_work(process, 1.2)
         self.stop(process)
         self.assertGreater(len((out / "relocalization.csv").read_text().splitlines()), 1)
         self.assertTrue((out / "poses.txt").exists())
+        self.assertEqual(contents(out / "previous"), before)
 
     def test_synth(self):
         out = self.folder / "made"
@@ -360,11 +368,17 @@ class Signals(Made):
 
     def test_loops(self):
         out = self.folder / "out"
-        process = self.start("loops", self.long, "--ground-truth", "poses", "--method", "orb-bow",
-                             "--out", out)
+        methods = ["--ground-truth", "poses", "--method", "orb-bow,orb-bow+geometry", "--out", out]
+        self.expect(program("loops", self.recording, *methods), SUCCESS)
+        before = contents(out), contents(out / "orb-bow")
+        process = self.start("loops", self.long, *methods)
         self.await_work(process, 0.4)
         self.stop(process)
-        self.assertGreater(json.loads((out / "summary.json").read_text())["queries"], 0)
+        for summary in json.loads((out / "summary.json").read_text()):
+            self.assertGreater(summary["queries"], 0)
+            self.assertTrue(summary["interrupted"])
+        previous = out / "previous"
+        self.assertEqual((contents(previous), contents(previous / "orb-bow")), before)
 
     def test_vocabulary(self):
         checkpoint, out = self.folder / "checkpoint", self.folder / "v.fbow"

@@ -5,13 +5,15 @@
 
 usage: protection_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxslam
 """
+import json
 import shutil
 import subprocess
 import sys
 import time
 import unittest
 
-from cli_test import BAD_INPUT, PROGRAM, TIMEOUT, Recorded, dxslam, poses
+from cli_test import BAD_INPUT, INTERRUPTED, PROGRAM, TIMEOUT, TRACKING_FAILED, Recorded, dxslam, \
+    poses
 
 PRECIOUS = b"precious\n"
 
@@ -71,7 +73,8 @@ class Files(Kept):
     def test_inputs(self):
         commands = self.commands()
         for name, file in (("info", self.map), ("ply", self.map), ("ate json", self.truth),
-                           ("rpe json", self.estimate), ("match", self.photos[1])):
+                           ("rpe json", self.estimate), ("match", self.photos[1]),
+                           ("merge", self.map)):
             with self.subTest(name):
                 self.keeps(file, *commands[name], file, said=(str(file), "an input of this command"))
         link = self.folder / "link.json"
@@ -89,6 +92,15 @@ class Files(Kept):
                 for _ in range(2):
                     self.assertEqual(dxslam(*command, file).returncode, 0)
                     self.assertGreater(file.stat().st_size, 0)
+
+    def test_a_photo_is_no_picture_of_match(self):
+        match = ["match", *self.photos[:2], "--features", "orb", "--out"]
+        photo = self.folder / f"holiday{self.photos[2].suffix}"
+        shutil.copy(self.photos[2], photo)
+        self.keeps(photo, *match, photo, said=("holiday", "is not replaced"))
+        picture = self.folder / "picture.jpg"
+        for _ in range(2):
+            self.succeed(dxslam(*match, picture))
 
     def test_two_outputs_of_one_name(self):
         same = self.folder / "same.svg"
@@ -206,6 +218,89 @@ class Folders(Kept):
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
                          ["link.dxmap", "m.dxmap", "out"])
         self.succeed(dxslam("run", self.recording, "--features", "orb", "--map-out", target))
+
+
+class EndsBadly(Kept):
+    """A run that does not end with 0 costs neither the last results nor the last map."""
+
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out"
+        self.saved = self.folder / "m.dxmap"
+        shutil.copytree(self.results, self.out)
+        shutil.copy(self.map, self.saved)
+        self.previous = self.folder / "m.dxmap.previous"
+
+    def command(self, *words):
+        return [*words, "--features", "orb", "--out", self.out, "--map-out", self.saved]
+
+    def check_kept(self, said):
+        before = {path.name: path.read_bytes() for path in self.results.iterdir()}
+        kept = {path.name: path.read_bytes() for path in (self.out / "previous").iterdir()}
+        self.assertEqual(kept, before)
+        self.assertEqual(self.previous.read_bytes(), self.map.read_bytes())
+        self.assertIn(f"the results of before are kept in {self.out / 'previous'}", said)
+        self.assertIn(f"the map of before is kept as {self.previous}", said)
+
+    def stop(self, *command, poses_file):
+        """Stops a command once it has some poses; returns what it says."""
+        begun = time.time_ns()
+        process = subprocess.Popen([PROGRAM, *map(str, command)], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + TIMEOUT
+        while (not poses_file.exists() or poses_file.stat().st_mtime_ns < begun or
+               len(poses(poses_file)) < 3):
+            self.assertIsNone(process.poll(), "it ended before it was stopped")
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        process.terminate()
+        said = process.communicate(timeout=TIMEOUT)[1]
+        self.assertEqual(process.returncode, INTERRUPTED, said)
+        return said
+
+    def broken(self):
+        """A recording with two images that can be read."""
+        broken = self.folder / "broken"
+        shutil.copytree(self.recording, broken)
+        for image in sorted((broken / "rgb").iterdir())[2:]:
+            image.write_bytes(b"no image")
+        return broken
+
+    def check_ended_well(self):
+        self.succeed(dxslam(*self.command("run", self.recording)))
+        self.assertFalse((self.out / "previous").exists())
+        self.assertFalse(self.previous.exists())
+        self.succeed(dxslam("map", "check", self.saved))
+
+    def test_a_run_that_is_stopped(self):
+        for _ in range(2):
+            self.check_kept(self.stop(*self.command("run", self.recording, "--realtime", "--autosave", 1),
+                                      poses_file=self.out / "trajectory.txt"))
+            self.assertLess(len(poses(self.out / "trajectory.txt")), self.frames)
+            self.succeed(dxslam("map", "check", self.saved))
+        self.check_ended_well()
+
+    def test_lifelong_that_is_stopped(self):
+        self.check_kept(self.stop(*self.command("lifelong", *20 * [self.recording]),
+                                  poses_file=self.out / "online_1.txt"))
+        rows = json.loads((self.out / "lifelong.json").read_text())
+        self.assertEqual([row["interrupted"] for row in rows], (len(rows) - 1) * [False] + [True])
+
+    def test_a_run_that_tracks_too_little(self):
+        broken = self.broken()
+        for _ in range(2):
+            done = dxslam(*self.command("run", broken))
+            self.assertEqual(done.returncode, TRACKING_FAILED, done.stderr)
+            self.check_kept(done.stderr)
+        self.check_ended_well()
+
+    def test_a_map_that_is_gone_on_with(self):
+        done = dxslam(*self.command("run", self.broken(), "--map-in", self.saved))
+        self.assertEqual(done.returncode, TRACKING_FAILED, done.stderr)
+        self.assertFalse(self.previous.exists())
+        self.succeed(dxslam("map", "check", self.saved))
 
 
 if __name__ == "__main__":

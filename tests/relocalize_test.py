@@ -9,7 +9,7 @@ import csv
 import math
 import unittest
 
-from cli_test import Recorded, dxslam, poses
+from cli_test import TRACKING_FAILED, Recorded, dxslam, poses
 
 
 class Relocalize(Recorded):
@@ -51,6 +51,13 @@ class Relocalize(Recorded):
         distances = self.distances(out)
         self.assertGreater(len(distances), 0)
         self.assertLess(max(distances), 0.5)
+
+    def test_a_recording_of_elsewhere(self):
+        elsewhere = self.folder / "elsewhere"
+        self.prepare("synth", elsewhere, "--scene", "corridor", "--frames", 5, "--seed", 3)
+        done = dxslam("relocalize", self.map, elsewhere, "--features", "hfnet")
+        self.assertEqual(done.returncode, TRACKING_FAILED, done.stderr)
+        self.assertRegex(done.stderr, "no frame was found: at most .* of 5 images")
 
     def test_true_poses_of_a_recording_are_not_replaced(self):
         out = self.folder / "recording_with_poses"

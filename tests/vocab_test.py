@@ -7,6 +7,7 @@ usage: vocab_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/release/dxsl
 """
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -116,6 +117,19 @@ class Vocab(Recorded):
         self.refuse(dxslam("vocab", "info", broken), broken, "checksum")
         self.refuse(dxslam("vocab", "convert", ROOT / "LICENSE", broken), "expected a vocabulary")
         self.refuse(dxslam("vocab", "info", self.folder / "none"), "none")
+
+    def test_a_vocabulary_is_not_converted_onto_itself(self):
+        words = self.folder / "words.fbow"
+        shutil.copy(self.vocabulary, words)
+        before = words.read_bytes()
+        self.refuse(dxslam("vocab", "convert", words, words, "--to", "dbow2"), words,
+                    "an input of this command")
+        self.assertEqual(words.read_bytes(), before)
+
+    def test_words_of_other_features_are_refused(self):
+        # As long as those of `orb`, but not the same.
+        self.refuse(dxslam("run", self.recording, "--features", "orb+brief", "--vocabulary",
+                           self.vocabulary), "trained on features `orb`", "`orb+brief`")
 
     def test_tries_its_files_before_the_work(self):
         other = self.folder / "other.txt"

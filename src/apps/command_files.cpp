@@ -10,6 +10,11 @@ namespace dxslam::apps {
 
 void CommandFiles::writes(const std::string& option, const std::string& path,
                           const FileKind& kind) {
+  writes(option, path);
+  if (!path.empty()) require_target(path, kind);
+}
+
+void CommandFiles::writes(const std::string& option, const std::string& path) {
   if (path.empty()) return;
   for (const std::string& input : inputs_) {
     if (input.empty() || !is_same_target(path, input)) continue;
@@ -21,7 +26,6 @@ void CommandFiles::writes(const std::string& option, const std::string& path,
     throw InputError(fmt::format("{} {}: is the file of {}, too, expected another name", option,
                                  path, other.option));
   }
-  require_target(path, kind);
   outputs_.push_back({option, path});
 }
 

@@ -19,6 +19,8 @@ class CommandFiles {
   /// Notes what `option` is given as. Throws InputError, one sentence, if that must not or cannot
   /// be written. Does nothing for an empty path.
   void writes(const std::string& option, const std::string& path, const FileKind& kind);
+  /// The same for a file whose kind is looked at elsewhere.
+  void writes(const std::string& option, const std::string& path);
 
  private:
   struct Output {

@@ -16,6 +16,9 @@ enum ExitCode : int {
   kInternalError = 70,
 };
 
+/// Of the frames with a pose, for kSuccess.
+constexpr double kLeastTrackedShare = 0.1;
+
 // Each adds one subcommand whose callback does the work; failures are thrown
 // (InputError, ContractError), main turns them into one line on stderr and an exit code. A command
 // that ends with a code of its own throws CLI::RuntimeError(code).

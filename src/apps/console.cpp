@@ -59,6 +59,10 @@ void warn_text(std::string_view text) {
 
 void draw_text(std::string_view text) { write_text(STDERR_FILENO, text, 0); }
 
+std::string counted(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 int stdout_error() { return first_stdout_error; }
 
 }  // namespace dxslam::apps

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -36,6 +37,9 @@ decltype(auto) shown(const T& value) {
 }
 template <class T>
 using Shown = std::decay_t<decltype(shown(std::declval<const T&>()))>;
+
+/// "1 frame", "2 frames"; `what` is one of them.
+std::string counted(std::size_t count, std::string_view what);
 
 /// To stdout.
 template <class... Args>

@@ -36,23 +36,30 @@ bool names_shortage(const std::string& what) {
 
 }  // namespace
 
+Failure failure_of(const std::exception& error) {
+  if (const auto* input = dynamic_cast<const InputError*>(&error)) {
+    return {input->what(), kBadInput};
+  }
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    return {fmt::format("{}: {}", file->path1().string(), file->code().message()), kBadInput};
+  }
+  if (dynamic_cast<const std::system_error*>(&error) != nullptr) {  // no thread, no descriptor
+    return refused(error.what());
+  }
+  const auto* opencv = dynamic_cast<const cv::Exception*>(&error);
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+      (opencv != nullptr && opencv->code == cv::Error::StsNoMem)) {
+    return no_memory();
+  }
+  if (opencv == nullptr && names_shortage(error.what())) return refused(error.what());
+  return {fmt::format("internal error: {}", error.what()), kInternalError};
+}
+
 Failure current_failure() {
   try {
     throw;
-  } catch (const InputError& e) {
-    return {e.what(), kBadInput};
-  } catch (const std::filesystem::filesystem_error& e) {
-    return {fmt::format("{}: {}", e.path1().string(), e.code().message()), kBadInput};
-  } catch (const std::system_error& e) {  // no thread, no descriptor
-    return refused(e.what());
-  } catch (const std::bad_alloc&) {
-    return no_memory();
-  } catch (const cv::Exception& e) {
-    if (e.code == cv::Error::StsNoMem) return no_memory();
-    return {fmt::format("internal error: {}", e.what()), kInternalError};
   } catch (const std::exception& e) {
-    if (names_shortage(e.what())) return refused(e.what());
-    return {fmt::format("internal error: {}", e.what()), kInternalError};
+    return failure_of(e);
   }
 }
 

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #pragma once
 
+#include <exception>
 #include <string>
 
 namespace dxslam::apps {
@@ -12,8 +13,9 @@ struct Failure {
   int code = 0;  ///< kBadInput, or kInternalError: always a bug
 };
 
-/// Of the exception that is being handled. Missing memory, a system that gives no more, and files
-/// that cannot be reached are no bugs.
+/// Missing memory, a system that gives no more, and files that cannot be reached are no bugs.
+Failure failure_of(const std::exception& error);
+/// Of the exception that is being handled.
 Failure current_failure();
 
 }  // namespace dxslam::apps

@@ -73,8 +73,8 @@ void ImageStream::add_source(const std::string& source, std::size_t stride) {
   const std::vector<std::string> photos = photos_in(part.folder);
   const std::size_t count = photos.empty() ? open_recording(part.folder)->size() : photos.size();
   if (part.first >= std::min(count, part.end)) {
-    throw InputError(
-        fmt::format("{}: has {} images, expected some in the part asked for", source, count));
+    throw InputError(fmt::format("{}: expected a part that begins before the end of the {}", source,
+                                 counted(count, "image")));
   }
   for (std::size_t i = part.first; i < std::min(count, part.end); i += part.step * stride) {
     images_.push_back({folders_.size(), i, photos.empty() ? std::string() : photos[i]});

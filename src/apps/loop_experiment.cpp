@@ -38,15 +38,10 @@ class FeatureSide {
               const std::string& vocabulary, bool with_words, bool keep_all)
       : extractor_(make_extractor(name, options)), keep_all_(keep_all) {
     if (!with_words) return;
-    vocabulary_ = Vocabulary::load(vocabulary_path(vocabulary, extractor_->name()));
+    const std::string path = vocabulary_path(vocabulary, extractor_->name());
+    vocabulary_ = Vocabulary::load(path);
     const DescriptorTraits& traits = extractor_->traits();
-    if (vocabulary_->binary() == traits.binary && vocabulary_->dimension() == traits.dimension) {
-      return;
-    }
-    throw InputError(fmt::format("{}: words of {} {}, expected {} {} as {} has", vocabulary,
-                                 vocabulary_->dimension(),
-                                 vocabulary_->binary() ? "bytes" : "floats", traits.dimension,
-                                 traits.binary ? "bytes" : "floats", extractor_->name()));
+    require_words_of(*vocabulary_, path, extractor_->name(), traits.binary, traits.dimension);
   }
 
   const FeatureExtractor& extractor() const { return *extractor_; }
@@ -221,13 +216,15 @@ LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& s
                                                          : LowLight::kDefaultGain);
   std::vector<std::optional<DepthView>> views(sequence.size());
   std::vector<SkippedFrame> failed;
+  ImageAttempts attempts;
+  bool interrupted = false;
   std::size_t total = (sequence.size() + settings.stride - 1) / settings.stride;
   if (settings.max_frames > 0) total = std::min(total, settings.max_frames);
   for (std::size_t k = 0; k < total; ++k) {
     const std::size_t i = k * settings.stride;
     progress(k + 1, total);
     bool extracted = false;
-    const auto failure = attempt_image(i, [&] {
+    const auto failure = attempts.attempt(i, [&] {
       std::optional<RgbdImage> image = sequence.read(i);
       if (!image || stop_requested()) return;
       if (settings.low_light_from && i >= *settings.low_light_from) {
@@ -241,7 +238,8 @@ LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& s
       extracted = true;
     });
     if (failure) failed.push_back(*failure);
-    if (stop_requested()) break;
+    interrupted = stop_requested();
+    if (interrupted) break;
     if (!extracted) continue;
     const double latest = sequence.stamp(i) - settings.poses.window;
     experiment.ask(static_cast<std::uint32_t>(i),
@@ -249,6 +247,7 @@ LoopExperiment run_loop_experiment(const LoopSettings& settings, RgbdSequence& s
   }
   LoopExperiment result = experiment.take_result();
   result.failed = std::move(failed);
+  result.interrupted = interrupted;
   result.views = std::move(views);
   return result;
 }

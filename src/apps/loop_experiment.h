@@ -59,6 +59,7 @@ struct LoopExperiment {
   /// By frame of the recording; nothing without depth or pose, or where the image was not used.
   std::vector<std::optional<DepthView>> views;
   std::vector<SkippedFrame> failed;  ///< images whose features could not be extracted
+  bool interrupted = false;          ///< by a stop: the rest of the images was not asked for
 };
 
 /// Asks every detector for every image, then makes the image a place. Views less than

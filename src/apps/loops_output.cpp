@@ -57,8 +57,8 @@ std::string candidates_csv(const MethodRun& run, const LoopTruth& truth) {
 std::string curve_csv(const LoopCurve& curve) {
   std::string out = "confidence,precision,recall,right,wrong\n";
   for (const PrecisionRecall& p : curve.points) {
-    out += fmt::format("{:.6f},{:.6f},{:.6f},{},{}\n", p.confidence, p.precision, p.recall, p.right,
-                       p.wrong);
+    out += fmt::format("{:.6f},{:.6f},{},{},{}\n", p.confidence, p.precision,
+                       number_or_empty(p.recall), p.right, p.wrong);
   }
   return out;
 }
@@ -93,6 +93,7 @@ Json summary_of(const LoopSettings& settings, const LoopExperiment& experiment,
   summary["recall_at_100_precision"] = number_or_null(curve.recall_at_100_precision);
   summary["confidence_at_100_precision"] = number_or_null(curve.confidence_at_100_precision);
   summary["average_precision"] = number_or_null(curve.average_precision);
+  summary["interrupted"] = experiment.interrupted;
   summary["accepted"] = accepted_loops(run, truth);
   summary["median_query_ms"] = number_or_null(median(times));
   summary["median_extraction_ms"] =
@@ -147,16 +148,8 @@ ResultFiles loop_result_files() {
            {"pr.svg", svg_kind()},
            {"summary.json", json_kind("a summary of `dxslam loops`", {"sequence", "method"})}},
           {"summary.json"},
-          {"summary.json"}};
-}
-
-void require_loop_targets(const std::string& out, const std::vector<std::string>& methods) {
-  if (methods.size() < 2) return;
-  for (const std::string& method : methods) {
-    for (const ResultFile& file : loop_result_files().all) {
-      require_kind_or_nothing((fs::path(out) / method / file.name).string(), file.kind);
-    }
-  }
+          {"summary.json"},
+          loop_method_names()};
 }
 
 void write_loop_results(OutputSteps& steps, ResultFolder& out, const LoopSettings& settings,
@@ -181,7 +174,6 @@ void write_loop_results(OutputSteps& steps, ResultFolder& out, const LoopSetting
     steps.run([&] { write(out.file("pr.svg"), draw_loop_curves_svg(curves, name, note)); });
     steps.run([&] { write(out.file("summary.json"), to_json_text(all)); });
   }
-  if (steps.failures().empty()) out.finish();
 }
 
 }  // namespace dxslam::apps

@@ -17,8 +17,6 @@ std::vector<NamedCurve> judge_methods(const LoopExperiment& experiment, const Lo
 
 /// The files that write_loop_results() writes into a folder.
 ResultFiles loop_result_files();
-/// Throws InputError if files of other kinds are where those of several methods will be.
-void require_loop_targets(const std::string& out, const std::vector<std::string>& methods);
 
 /// Files as docs/file_formats.md has them: candidates.csv, pr.csv, pr.svg and summary.json in
 /// `out`, or one such folder per method below it, with pr.svg and summary.json of all. Each is

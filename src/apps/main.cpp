@@ -15,7 +15,8 @@ namespace dxslam::apps {
 namespace {
 
 void add_commands(CLI::App& app) {
-  app.set_version_flag("--version", "dxslam " DXSLAM_VERSION);
+  app.set_help_flag("-h,--help", "print this help and end");  // of the commands as well
+  app.set_version_flag("--version", "dxslam " DXSLAM_VERSION, "print the version and end");
   app.require_subcommand(1);
   add_run_command(app);
   add_lifelong_command(app);

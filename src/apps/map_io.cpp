@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "apps/console.h"
+#include "apps/failure.h"
 
 namespace dxslam::apps {
 
@@ -49,9 +50,10 @@ void AutoSaver::save() {
       snapshot = take_snapshot(header_, map, stored_loops(map, loops), pictures_(map));
     });
     if (!snapshot) return;  // an error is on its way
+    target_.prepare();
     under_way_ = std::async(std::launch::async, [this, kept = std::move(*snapshot)] {
-      save_map(path_, kept);
-      system_.events().publish(MapSaved{path_});
+      save_map(target_.path(), kept);
+      system_.events().publish(MapSaved{target_.path()});
     });
   });
 }
@@ -65,7 +67,7 @@ void AutoSaver::attempt(const std::function<void()>& step) {
   try {
     step();
   } catch (const std::exception& e) {
-    if (!warned_) warn("autosave: {}; the run goes on and tries again", e.what());
+    if (!warned_) warn("autosave: {}; the run goes on and tries again", failure_of(e).sentence);
     warned_ = true;
   }
 }

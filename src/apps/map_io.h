@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/map_target.h"
 #include "slam/observer.h"
 #include "slam/stored_system.h"
 #include "slam/system.h"
@@ -28,10 +29,10 @@ class AutoSaver {
   /// Pictures of the map's keyframes, as take_snapshot() wants them.
   using Pictures = std::function<std::vector<std::string>(const Map&)>;
 
-  /// `system` must outlive this, or the call of finish().
-  AutoSaver(System& system, std::string path, int keyframes, MapHeader header, Pictures pictures)
+  /// Both references must outlive this, or the call of finish().
+  AutoSaver(System& system, MapTarget& target, int keyframes, MapHeader header, Pictures pictures)
       : system_(system),
-        path_(std::move(path)),
+        target_(target),
         keyframes_(keyframes),
         header_(std::move(header)),
         pictures_(std::move(pictures)) {}
@@ -47,7 +48,7 @@ class AutoSaver {
   void attempt(const std::function<void()>& step);
 
   System& system_;
-  const std::string path_;
+  MapTarget& target_;
   const int keyframes_;
   const MapHeader header_;
   const Pictures pictures_;

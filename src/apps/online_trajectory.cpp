@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "apps/console.h"
+#include "apps/failure.h"
 #include "core/error.h"
 
 namespace dxslam::apps {
@@ -21,7 +22,7 @@ void OnlineTrajectory::append(const StampedPose& pose) {
     }
     write_waiting();
   } catch (const std::exception& e) {
-    if (!warned_) warn("{}; the run goes on and tries again", e.what());
+    if (!warned_) warn("{}; the run goes on and tries again", failure_of(e).sentence);
     warned_ = true;
   }
 }

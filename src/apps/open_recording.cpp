@@ -32,21 +32,21 @@ std::unique_ptr<ImageSource> open_images(const std::string& source, const Sequen
 }
 
 std::string source_help() {
-  return fmt::format("{}. Or a camera: {}", recording_help(), known_live_sources());
+  return fmt::format("{}; or a camera: {}", recording_help(), known_live_sources());
 }
 
-std::string recording_help() { return "Recording: " + known_recordings(); }
+std::string recording_help() { return "recording: " + known_recordings(); }
 
 void add_reader_options(CLI::App& command, SequenceOptions& options) {
   command.add_option("--format", options.format, sequence_format_list())
       ->check(recording_format())
       ->capture_default_str();
   command.add_option("--calibration", options.calibration,
-                     "Camera preset or YAML file (default: by format)");
+                     "camera preset or YAML file (default: by format)");
   command.add_option("--color-topic", options.color_topic,
-                     "Topic of the colour images in a bag (default: the likeliest)");
+                     "topic of the colour images in a bag (default: the likeliest)");
   command.add_option("--depth-topic", options.depth_topic,
-                     "Topic of the depth images in a bag (default: the likeliest)");
+                     "topic of the depth images in a bag (default: the likeliest)");
 }
 
 }  // namespace dxslam::apps

@@ -39,6 +39,16 @@ int OutputSteps::report(int code) const {
   return failures_.empty() ? code : kBadInput;
 }
 
+int OutputSteps::end_results(ResultFolder* folder, int code) const {
+  code = report(code);
+  if (folder == nullptr) return code;
+  if (code == kSuccess) folder->finish();
+  if (const std::string kept = folder->kept(); !kept.empty()) {
+    warn("the results of before are kept in {}", kept);
+  }
+  return code;
+}
+
 void OutputSteps::end_command() const {
   if (const int code = report(kSuccess); code != kSuccess) throw CLI::RuntimeError(code);
 }

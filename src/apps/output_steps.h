@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/primitives/result_folder.h"
+
 namespace dxslam::apps {
 
 /// The outputs at the end of a command, each written on its own: one that fails costs no other.
@@ -23,6 +25,9 @@ class OutputSteps {
   /// The same as the end of a command that went well otherwise: throws CLI::RuntimeError with the
   /// exit code unless there is no failure.
   void end_command() const;
+  /// The same as report(), and ends the results in `folder`, null where there are none: after
+  /// exit code 0 they replace the last ones; else it is said where those are kept.
+  int end_results(ResultFolder* folder, int code) const;
 
  private:
   void keep(std::string failure);

@@ -33,6 +33,7 @@ struct State {
   int unsaved = 0;          // guarded by mutex
   Clock::time_point quiet;  // guarded by mutex; when unsaved last became 0
   std::atomic<bool> abandoned{false};
+  std::atomic<bool> told{false};  // that it was stopped
 };
 
 // Never destroyed: the watching thread and abandoned ones live as long as the process.
@@ -61,6 +62,10 @@ sigset_t stop_signals() {
   return signals;
 }
 
+void tell_stop() {
+  if (!state().told.exchange(true)) warn("stopped by a signal");
+}
+
 // Ends the process once nothing is unsaved and the last words had their time.
 void end_when_saved() {
   State& s = state();
@@ -74,7 +79,7 @@ void end_when_saved() {
   }
   // Both locks are kept: nothing can be begun any more.
   const std::unique_lock files(files_being_written());
-  warn("stopped by a signal");
+  tell_stop();
   ::_exit(kInterrupted);
 }
 
@@ -138,6 +143,7 @@ Unsaved::~Unsaved() {
 void abandon_thread() { state().abandoned = true; }
 
 int end_process(int code) {
+  if (stop_requested() && code != kSuccess) tell_stop();
   if (state().abandoned) ::_exit(code);
   return code;
 }

@@ -36,7 +36,7 @@ class Unsaved {
 
 /// A thread that cannot be ended goes on: end_process() then leaves without waiting for it.
 void abandon_thread();
-/// The last thing in main.
+/// The last thing in main: says that it was stopped, unless it ended well all the same.
 [[nodiscard]] int end_process(int code);
 
 }  // namespace dxslam::apps

@@ -17,8 +17,8 @@ constexpr std::size_t kBarWidth = 24;
 
 }  // namespace
 
-Progress::Progress(std::string title, std::size_t total)
-    : title_(std::move(title)), total_(total), terminal_(isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(std::string title, std::size_t total, Unit unit)
+    : title_(std::move(title)), total_(total), unit_(unit), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Progress::update(std::size_t done, const std::string& state) {
   const Clock::time_point now = Clock::now();
@@ -34,9 +34,13 @@ void Progress::draw(std::size_t done, const std::string& state, double elapsed) 
   const double rate = elapsed > 0.0 ? static_cast<double>(done) / elapsed : 0.0;
   const double left =
       rate > 0.0 ? static_cast<double>(total_ - std::min(done, total_)) / rate : 0.0;
-  const std::string text = total_ == 0 ? fmt::format("{}  {:.1f}/s  {}", done, rate, state)
-                                       : fmt::format("{}/{}  {:.1f}/s  {}  {:.0f} s left", done,
-                                                     total_, rate, state, left);
+  std::string text =
+      fmt::format("{}/{}  {:.1f}/s  {}  {:.0f} s left", done, total_, rate, state, left);
+  if (total_ == 0) text = fmt::format("{}  {:.1f}/s  {}", done, rate, state);
+  if (unit_ == Unit::kShare) {
+    const double share = static_cast<double>(done) / static_cast<double>(total_);
+    text = fmt::format("{:.0f} %  {}  {:.0f} s left", 100.0 * share, state, left);
+  }
   if (!terminal_) {
     draw_text(fmt::format("{}: {}\n", title_, text));
     return;

@@ -12,8 +12,9 @@ namespace dxslam::apps {
 /// plain line now and then. One thread at a time.
 class Progress {
  public:
+  enum class Unit { kItems, kShare };  ///< kShare: what is done is told in per cent
   /// `total` 0: nobody knows how many there will be.
-  Progress(std::string title, std::size_t total);
+  Progress(std::string title, std::size_t total, Unit unit = Unit::kItems);
   /// `state` is a word or two, e.g. "tracking" or "lost".
   void update(std::size_t done, const std::string& state);
   /// Ends the line.
@@ -25,6 +26,7 @@ class Progress {
 
   std::string title_;
   std::size_t total_;
+  Unit unit_;
   bool terminal_;
   bool drawn_ = false;
   Clock::time_point start_ = Clock::now();

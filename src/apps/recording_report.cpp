@@ -2,13 +2,17 @@
 // Copyright 2026 The dxslam authors
 #include "apps/recording_report.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stop_token>
 #include <utility>
 
+#include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/failure.h"
 #include "apps/process.h"
 #include "apps/statistics_json.h"
 #include "core/error.h"
@@ -49,18 +53,28 @@ void print_recording(const ImageOrigin& recording) {
 }
 
 SkippedFrame skipped_for(std::size_t index, const std::exception& error) {
-  std::string reason = error.what();
+  const Failure failure = failure_of(error);
+  std::string reason = failure.code == kBadInput ? failure.sentence : error.what();
   while (!reason.empty() && reason.back() == '\n') reason.pop_back();  // OpenCV's end so
   return {index, reason};
 }
 
-std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function<void()>& work) {
+std::optional<SkippedFrame> ImageAttempts::attempt(std::size_t index,
+                                                   const std::function<void()>& work) {
+  SkippedFrame skipped;
   try {
     work();
+    has_worked_ = true;
     return std::nullopt;
   } catch (const std::exception& e) {
-    return skipped_for(index, e);
+    skipped = skipped_for(index, e);
   }
+  if (has_worked_) return skipped;
+  if (failures_++ == 0) reason_ = skipped.reason;
+  has_worked_ = skipped.reason != reason_;
+  if (failures_ < kAlike || has_worked_) return skipped;
+  throw InputError(
+      fmt::format("none of the first {} images can be worked on: {}", failures_, reason_));
 }
 
 std::optional<RgbdImage> next_image(ImageSource& source, std::vector<SkippedFrame>& failed,

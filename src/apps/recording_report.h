@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/camera.h"
@@ -20,14 +21,26 @@ namespace dxslam::apps {
 
 /// Frame `index` is skipped for what was thrown while it was read or worked on.
 SkippedFrame skipped_for(std::size_t index, const std::exception& error);
-/// Calls `work`, which reads an image and works on it. What it throws concerns this image alone:
-/// returned is why it was skipped.
-std::optional<SkippedFrame> attempt_image(std::size_t index, const std::function<void()>& work);
 /// The next image of a source; nothing at the end and after a stop. What cannot be read costs this
 /// image alone, and is added to `failed`; that no image can come any more is thrown. `tell`, where
 /// given, gets all that could not be read.
 std::optional<RgbdImage> next_image(ImageSource& source, std::vector<SkippedFrame>& failed,
                                     const std::function<void(const SkippedFrame&)>& tell = {});
+/// Work on the images of a recording, one after another. What is thrown concerns one image alone,
+/// unless the first ones fail alike: then the others would, too (a network that this memory or this
+/// size of images is too small for).
+class ImageAttempts {
+ public:
+  /// Calls `work`, which reads an image and works on it. Returns why the image was skipped. Throws
+  /// InputError where the first kAlike images were skipped for one reason.
+  std::optional<SkippedFrame> attempt(std::size_t index, const std::function<void()>& work);
+  static constexpr std::size_t kAlike = 3;
+
+ private:
+  bool has_worked_ = false;
+  std::size_t failures_ = 0;
+  std::string reason_;  // of the first
+};
 /// Frames that could not be read, and `failed` ones, in order.
 std::vector<SkippedFrame> all_skipped(const ImageOrigin& recording,
                                       const std::vector<SkippedFrame>& failed);

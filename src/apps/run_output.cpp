@@ -296,7 +296,6 @@ void write_results(OutputSteps& steps, Session& session, OnlineTrajectory& onlin
     summary["failed_outputs"] = failed_outputs(steps, record);
     write_file_atomically(folder.file("summary.json"), to_json_text(summary));
   });
-  if (steps.failures().empty()) folder.finish();
 }
 
 }  // namespace dxslam::apps

@@ -25,7 +25,8 @@ struct RunRecord {
   std::size_t frames_offered = 0;
   std::vector<SkippedFrame> failed_images;
   std::size_t frames_dropped = 0;  ///< real time only: the system was busy
-  std::size_t frames_tracked = 0;  ///< in the map of `trajectory`
+  std::size_t frames_tracked = 0;  ///< in any map
+  std::size_t maps = 0;            ///< in which they were
   bool interrupted = false;
   Trajectory trajectory;  ///< in the map in which most frames were tracked
   std::optional<TruthReport> truth;

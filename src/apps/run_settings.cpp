@@ -2,6 +2,8 @@
 // Copyright 2026 The dxslam authors
 #include "apps/run_settings.h"
 
+#include <fmt/format.h>
+
 #include "apps/open_recording.h"
 #include "apps/system_setup.h"
 #include "apps/usage.h"
@@ -9,6 +11,11 @@
 
 namespace dxslam::apps {
 namespace {
+
+void refuse(bool unused, const char* option, const char* meant) {
+  if (!unused) return;
+  throw InputError(fmt::format("option {} has no use here, expected it {}", option, meant));
+}
 
 void check_map_settings(const RunSettings& settings, const SystemOptions& options) {
   if (options.mode == "localization" && settings.map_in.empty()) {
@@ -20,6 +27,11 @@ void check_map_settings(const RunSettings& settings, const SystemOptions& option
   if (settings.thumbnails && settings.map_out.empty()) {
     throw InputError("--thumbnails has no map to be put into, expected --map-out FILE");
   }
+  const bool localizes = options.mode == "localization";
+  refuse(settings.autosave > 0 && localizes, "--autosave", "with mode slam");
+  refuse(settings.thumbnails && localizes, "--thumbnails", "with mode slam");
+  refuse(!settings.vocabulary.empty() && !options.close_loops, "--vocabulary",
+         "where loops are closed");
 }
 
 }  // namespace
@@ -27,22 +39,22 @@ void check_map_settings(const RunSettings& settings, const SystemOptions& option
 void add_run_options(CLI::App& command, RunSettings& settings) {
   add_reader_options(command, settings.reader);
   command.add_option("--config", settings.config, "YAML file; see `dxslam config dump`");
-  command.add_option("--features", settings.features, "Extractor name or model manifest")
+  command.add_option("--features", settings.features, "extractor name or model manifest")
       ->check(extractor_name());
   command.add_option("--mode", settings.mode, "slam, or localization in the map of --map-in")
       ->check(one_of({"slam", "localization"}));
-  command.add_option("--map-in", settings.map_in, "Go on with this map");
-  command.add_option("--map-out", settings.map_out, "Save the map here");
+  command.add_option("--map-in", settings.map_in, "go on with this map");
+  command.add_option("--map-out", settings.map_out, "save the map here");
   command
       .add_option("--autosave", settings.autosave,
-                  "Save it after every so many keyframes as well, not only at the end")
+                  "save it after every so many keyframes as well, not only at the end")
       ->check(whole_number(1));
   command.add_option("--vocabulary", settings.vocabulary,
                      "FBoW or DBoW2 file; none: loops by global descriptor alone");
-  command.add_flag("--no-loop-closing", settings.no_loop_closing, "Do not look for loops");
-  command.add_option("--stride", settings.stride, "Use every n-th frame")->check(whole_number(1));
+  command.add_flag("--no-loop-closing", settings.no_loop_closing, "do not look for loops");
+  command.add_option("--stride", settings.stride, "use every n-th frame")->check(whole_number(1));
   command.add_flag("--deterministic", settings.deterministic,
-                   "One thread, exact arithmetic: the same result every time");
+                   "one thread, exact arithmetic: the same result every time");
 }
 
 SystemOptions system_options_of(const RunSettings& settings) {

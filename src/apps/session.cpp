@@ -24,7 +24,6 @@
 namespace dxslam::apps {
 namespace {
 
-constexpr double kMinTrackedShare = 0.1;  // below it the run counts as failed
 constexpr std::chrono::milliseconds kSlice{20};
 
 // Everything that `run` and `lifelong` write into --out: the one replaces what the other wrote.
@@ -92,7 +91,7 @@ void Session::claim_targets() {
         fmt::format("--map-out {}: is the place of a result of --out {}, expected another name",
                     settings_.map_out, settings_.out));
   }
-  if (!settings_.map_out.empty()) map_lock_ = lock_map_target(settings_.map_out);
+  if (!settings_.map_out.empty()) map_target_.emplace(settings_.map_out, settings_.map_in);
   unsaved_.emplace();
 }
 
@@ -126,7 +125,7 @@ std::unique_ptr<System> Session::start(const Camera& camera, EventReader::Functi
   tell_notes(feature_notes(options_, system->extractor(), stored.has_value()));
   thumbnails_.emplace(settings_.thumbnails, std::move(pictures));
   if (settings_.autosave > 0) {
-    saver_.emplace(*system, settings_.map_out, settings_.autosave, header_,
+    saver_.emplace(*system, *map_target_, settings_.autosave, header_,
                    [this](const Map& map) { return thumbnails_->of(map); });
   }
   reader_.emplace(system->subscribe(Subscription::kUnbounded, kReceived),
@@ -173,7 +172,7 @@ std::optional<RgbdImage> Session::next(ImageSource& source, std::vector<SkippedF
 bool Session::attempt(std::size_t index, std::vector<SkippedFrame>& failed,
                       const std::function<void()>& work) {
   given_ = false;
-  const auto failure = attempt_image(index, work);
+  const auto failure = attempts_.attempt(index, work);
   if (failure && !system_->has_failed()) {
     failed.push_back(*failure);
     if (!given_) tell_unreadable(*failure);
@@ -225,6 +224,7 @@ void Session::save_map(OutputSteps& steps) {
     return;
   }
   map_is_saved_ = steps.run([&] {
+    map_target_->prepare();
     save_system_map(settings_.map_out, header_, system_->map(), system_->closed_loops(),
                     thumbnails_->of(system_->map()));
   });
@@ -234,13 +234,23 @@ void Session::tell_map() const {
   if (map_is_saved_) print("map in {}\n", settings_.map_out);
 }
 
+int Session::end(const OutputSteps& steps, int code) {
+  code = steps.end_results(folder(), code);
+  if (!map_target_) return code;
+  if (code == kSuccess) map_target_->finish();
+  if (const std::string kept = map_target_->kept(); !kept.empty()) {
+    warn("the map of before is kept as {}", kept);
+  }
+  return code;
+}
+
 int judge_tracking(std::size_t tracked, std::size_t frames,
                    const std::optional<std::string>& why_no_pose) {
   if (why_no_pose) {
     warn("no frame was tracked: {}", *why_no_pose);
     return kTrackingFailed;
   }
-  if (static_cast<double>(tracked) >= kMinTrackedShare * static_cast<double>(frames)) {
+  if (static_cast<double>(tracked) >= kLeastTrackedShare * static_cast<double>(frames)) {
     return kSuccess;
   }
   warn("only {} of {} frames were tracked", tracked, frames);

@@ -10,8 +10,10 @@
 
 #include "apps/first_pose_report.h"
 #include "apps/map_io.h"
+#include "apps/map_target.h"
 #include "apps/output_steps.h"
 #include "apps/process.h"
+#include "apps/recording_report.h"
 #include "apps/run_settings.h"
 #include "apps/thumbnails.h"
 #include "core/image_source.h"
@@ -58,8 +60,8 @@ class Session {
   /// In `feed`: next_image(), told to those who receive messages.
   std::optional<RgbdImage> next(ImageSource& source, std::vector<SkippedFrame>& failed);
   /// In `feed`, once per image: calls `work`, which processes it. What that throws costs this image
-  /// alone, and is added to `failed`. Returns whether further images are wanted: not after a stop,
-  /// nor once tracking or mapping has failed.
+  /// alone (see ImageAttempts), and is added to `failed`. Returns whether further images are
+  /// wanted: not after a stop, nor once tracking or mapping has failed.
   bool attempt(std::size_t index, std::vector<SkippedFrame>& failed,
                const std::function<void()>& work);
   /// In `work`: hands an image to the system; false if it was dropped (`live` only).
@@ -79,6 +81,10 @@ class Session {
   void save_map(OutputSteps& steps);
   /// Says on stdout where the map was saved; nothing where none was.
   void tell_map() const;
+  /// Ends the command, which has come to the exit code `code`: says what failed, and after exit
+  /// code 0 lets go of the last results and of the map of before; else it says where those are
+  /// kept. Returns the exit code.
+  int end(const OutputSteps& steps, int code);
   /// All outputs are written: from here on a stop need not wait for this any more.
   void all_is_saved() { unsaved_.reset(); }
 
@@ -89,7 +95,7 @@ class Session {
   RunSettings settings_;
   SystemOptions options_;
   std::optional<ResultFolder> folder_;
-  std::unique_ptr<FileLock> map_lock_;  // after the folder, in which it may lie
+  std::optional<MapTarget> map_target_;  // after the folder, in which it may lie
   FirstPoseReport first_pose_;
   std::optional<Thumbnails> thumbnails_;
   std::optional<AutoSaver> saver_;
@@ -101,6 +107,7 @@ class Session {
   bool given_ = false;  // the image in work, to the system
   RunStatistics statistics_;
   std::optional<EventReader> reader_;  // the last of those that its thread uses
+  ImageAttempts attempts_;
   FirstError error_;
   std::optional<Unsaved> unsaved_;
 };

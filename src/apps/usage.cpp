@@ -140,6 +140,8 @@ CLI::Validator recording_format() {
 
 CLI::Validator extractor_name() { return accepted_by(require_known_extractor); }
 
+CLI::Validator precision_name() { return one_of({"auto", "f32", "bf16", "int8"}); }
+
 CLI::Validator whole_number(std::int64_t min, std::int64_t max) {
   return {[min, max](std::string& text) {
             const std::optional<std::int64_t> value = parse_whole(text);
@@ -159,6 +161,11 @@ CLI::Validator number(double min, double max) {
 }
 
 CLI::Validator low_light_gain() { return number(0.001, 1.0); }
+
+void refuse_unused(const CLI::App& command, const char* option, bool used, const char* meant) {
+  if (used || command.count(option) == 0) return;
+  throw InputError(fmt::format("option {} has no use here, expected it {}", option, meant));
+}
 
 void refuse_empty_values(CLI::App& app) {
   const CLI::Validator not_empty(

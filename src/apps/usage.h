@@ -58,11 +58,17 @@ CLI::Validator accepted_by(std::function<void(const std::string&)> take);
 CLI::Validator svg_file();
 /// auto, or a format of recordings.
 CLI::Validator recording_format();
+/// Of the arithmetic of networks.
+CLI::Validator precision_name();
 /// The name of an extractor, or a manifest (*.yaml).
 CLI::Validator extractor_name();
 
 /// The gain of the low-light model, as an option.
 CLI::Validator low_light_gain();
+
+/// An option that the others leave without use is a mistake: throws InputError if `option` is given
+/// but not `used`. `meant`: with what it would be, e.g. "with --map-out".
+void refuse_unused(const CLI::App& command, const char* option, bool used, const char* meant);
 
 /// No option of the program takes an empty value: it is what an unset variable of a shell gives.
 void refuse_empty_values(CLI::App& app);

@@ -52,7 +52,10 @@ void add_config_command(CLI::App& app) {
                    fmt::format("camera preset: {}", fmt::join(camera_preset_names(), ", ")))
       ->check(one_of(camera_preset_names()))
       ->option_text("NAME");
-  command->callback([arguments] { dump(*arguments); });
+  command->callback([arguments, command] {
+    refuse_unused(*command, "--all", arguments->camera.empty(), "without --camera");
+    dump(*arguments);
+  });
 }
 
 }  // namespace dxslam::apps

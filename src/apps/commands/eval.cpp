@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -298,7 +299,13 @@ void add_eval_command(CLI::App& app) {
       ->option_text("frames|seconds");
   rpe->add_flag("--consecutive", relative->consecutive,
                 "let each pair begin where the last ended, not at every pose");
-  rpe->callback([relative] { evaluate_rpe_command(*relative); });
+  rpe->callback([relative] {
+    if (relative->unit == "frames" && relative->delta != std::floor(relative->delta)) {
+      throw CLI::ValidationError("--delta",
+                                 fmt::format("{:g} is no whole number of frames", relative->delta));
+    }
+    evaluate_rpe_command(*relative);
+  });
 
   add_eval_openloris_command(*eval);
 }

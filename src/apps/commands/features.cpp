@@ -116,6 +116,7 @@ void add_feature_options(CLI::App& command, FeatureArguments& arguments) {
       ->check(range_of<ExtractorOptions>("threads"))
       ->capture_default_str();
   command.add_option("--precision", arguments.options.precision, "auto, f32, bf16 or int8")
+      ->check(precision_name())
       ->capture_default_str();
   command.add_flag("--deterministic", arguments.options.deterministic,
                    "f32 arithmetic: the same bits in every run");
@@ -150,7 +151,7 @@ void add_extract_command(CLI::App& app) {
   command->add_option("images", arguments->images, "image files: PNG, JPEG, BMP, PGM, PPM or TIFF")
       ->required();
   command->add_option("--npz", arguments->npz,
-                      "folder for one NumPy archive an image: keypoints N x 2 (pixels), scores N, "
+                      "folder for one NumPy archive per image: keypoints N x 2 (pixels), scores N, "
                       "descriptors N x D, global G");
   add_feature_options(*command, arguments->extractor);
   add_low_light_option(*command, arguments->low_light);

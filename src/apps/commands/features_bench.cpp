@@ -201,6 +201,7 @@ void add_bench_command(CLI::App& app) {
       ->check(range_of<ExtractorOptions>("threads"))
       ->capture_default_str();
   command->add_option("--precision", arguments->options.precision, "auto, f32, bf16 or int8")
+      ->check(precision_name())
       ->capture_default_str();
   add_low_light_option(*command, arguments->low_light);
   command->callback([arguments] { bench(*arguments); });

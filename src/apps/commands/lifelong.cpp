@@ -165,10 +165,11 @@ std::size_t skipped(const Visit& visit) {
   return visit.recording.skipped().size() + visit.failed.size();
 }
 
-Json row_of(const Visit& visit, const VisitResult& result, const MapSize& size) {
+Json row_of(const Visit& visit, const VisitResult& result, const MapSize& size, bool interrupted) {
   Json row = {{"sequence", visit.recording.name()}, {"frames", visit.frames},
               {"skipped_frames", skipped(visit)},   {"localized", visit.localized},
               {"keyframes", size.keyframes},        {"points", size.points}};
+  row["interrupted"] = interrupted;
   row["seconds_to_first_pose"] =
       visit.first_pose ? Json(*visit.first_pose - visit.first_stamp) : Json(nullptr);
   row["ate"] = truth_json(result.truth);
@@ -212,11 +213,12 @@ void write_results(OutputSteps& steps, const LifelongArguments& arguments, Sessi
   steps.run([&] {
     Json table = Json::array();
     for (std::size_t v = 0; v < visits.size(); ++v) {
-      table.push_back(row_of(visits[v], results[v], size_after(v, visits.size(), session)));
+      const bool last = v + 1 == visits.size();
+      table.push_back(row_of(visits[v], results[v], size_after(v, visits.size(), session),
+                             last && stop_requested()));
     }
     write_file_atomically(folder.file("lifelong.json"), to_json_text(table));
   });
-  if (steps.failures().empty()) folder.finish();
 }
 
 void print_outcome(const std::deque<Visit>& visits, const std::vector<VisitResult>& results,
@@ -228,6 +230,10 @@ void print_outcome(const std::deque<Visit>& visits, const std::vector<VisitResul
           visit.recording.name(), visit.localized, visit.frames, size.keyframes, size.points);
     if (results[v].truth) print_truth(*results[v].truth, visit.recording.camera());
     print_skipped(all_skipped(visit.recording, visit.failed));
+    if (visit.localized == 0 && !visit.first) {
+      warn("{}: no frame was localized, for nothing of the first map was recognised",
+           visit.recording.name());
+    }
   }
 }
 
@@ -247,7 +253,7 @@ int end(const LifelongArguments& arguments, Session& session, std::deque<Visit>&
   const int code = judge_tracking(localized(visits), frames, session.why_no_pose());
   steps.tell_place(session.folder()->path());
   session.tell_map();
-  return steps.report(stop_requested() ? kInterrupted : code);
+  return session.end(steps, stop_requested() ? kInterrupted : code);
 }
 
 int run(const LifelongArguments& arguments) {
@@ -291,18 +297,18 @@ void add_lifelong_command(CLI::App& app) {
   auto arguments = std::make_shared<LifelongArguments>();
   RunSettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand(
-      "lifelong", "Feed recordings of one place one after another, as if day by day");
+      "lifelong", "feed recordings of one place one after another, as if day by day");
   command->add_option("SEQUENCE", arguments->sequences, recording_help() + "; several, in order")
       ->required();
-  command->add_option("--out", settings.out, "Folder for the results")->required();
+  command->add_option("--out", settings.out, "folder for the results")->required();
   add_run_options(*command, settings);
-  command->add_option("--scene", arguments->scene, "Name of the scene in the result")
+  command->add_option("--scene", arguments->scene, "name of the scene in the result")
       ->capture_default_str();
-  command->add_option("--frame", arguments->frame, "Name of the camera in the result")
+  command->add_option("--frame", arguments->frame, "name of the camera in the result")
       ->capture_default_str();
   command
       ->add_option("--low-light-in", arguments->low_light,
-                   "Darken the sequences of these numbers (from 1; low-light model)")
+                   "darken the sequences of these numbers (from 1; low-light model)")
       ->check(whole_number(1));
   command->callback([arguments] {
     if (const int code = run(*arguments); code != kSuccess) throw CLI::RuntimeError(code);

@@ -2,6 +2,7 @@
 // Copyright 2026 The dxslam authors
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -29,21 +30,29 @@ struct LoopsArguments {
   std::string config;
 };
 
+std::string share(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-";
+}
+
 void print_table(const LoopExperiment& experiment, const std::vector<NamedCurve>& curves) {
-  print("{} queries, {} of them with a true loop; {} places\n", experiment.queries.size(),
-        curves.front().curve.queries_with_loop, experiment.places.size());
+  print("{} queries, {} of them with a true loop; {} places{}\n", experiment.queries.size(),
+        curves.front().curve.queries_with_loop, experiment.places.size(),
+        experiment.interrupted ? ", since it was stopped" : "");
+  if (curves.front().curve.queries_with_loop == 0) {
+    warn("no query has a true loop, so that there is no recall");
+  }
   print("{:<28} {:>18} {:>18} {:>16}\n", "method", "recall at 100 %", "average precision",
         "median query ms");
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<double> times;
     for (const LoopQuery& query : experiment.runs[i].queries) times.push_back(query.ms);
-    print("{:<28} {:>18.4f} {:>18.4f} {:>16.2f}\n", curves[i].name,
-          curves[i].curve.recall_at_100_precision, curves[i].curve.average_precision,
+    print("{:<28} {:>18} {:>18} {:>16.2f}\n", curves[i].name,
+          share(curves[i].curve.recall_at_100_precision), share(curves[i].curve.average_precision),
           summarise(times).median);
   }
 }
 
-void find_loops(const LoopsArguments& arguments) {
+int find_loops(const LoopsArguments& arguments) {
   LoopSettings settings = arguments.settings;
   if (!arguments.config.empty()) {
     settings.detector = load_options(arguments.config, settings.detector);
@@ -66,10 +75,7 @@ void find_loops(const LoopsArguments& arguments) {
   std::optional<LoopTruth> truth;  // a file is read at once, so that mistakes show at once
   if (settings.truth != "poses") truth = load_loop_truth(settings, *sequence, {});
   std::optional<ResultFolder> folder;  // before anything costs time
-  if (!settings.out.empty()) {
-    folder.emplace(settings.out, loop_result_files());
-    require_loop_targets(settings.out, settings.methods);
-  }
+  if (!settings.out.empty()) folder.emplace(settings.out, loop_result_files());
   std::optional<Unsaved> unsaved;
   Progress progress("images", sequence->size());
   const LoopExperiment experiment =
@@ -80,7 +86,7 @@ void find_loops(const LoopsArguments& arguments) {
   progress.finish();
   // To judge very many images takes longer than anybody waits after a stop.
   unsaved.reset();
-  if (experiment.queries.empty() && stop_requested()) return;
+  if (experiment.queries.empty() && stop_requested()) return kInterrupted;
   if (experiment.queries.empty()) {
     throw InputError(fmt::format("{}: no image to ask for, expected some{}", settings.sequence,
                                  settings.second_pass_from ? " in the second pass" : ""));
@@ -94,11 +100,11 @@ void find_loops(const LoopsArguments& arguments) {
   print_table(experiment, curves);
   print_skipped(all_skipped(*sequence, experiment.failed));
   if (folder) steps.tell_place(folder->path());
-  steps.end_command();
+  const int code = experiment.interrupted ? kInterrupted : kSuccess;
+  return steps.end_results(folder ? &*folder : nullptr, code);
 }
 
-// An option that the others leave without use is a mistake.
-void refuse_unused(const CLI::App& command, const LoopSettings& settings) {
+void refuse_unused_options(const CLI::App& command, const LoopSettings& settings) {
   bool words = false;
   bool learned = false;
   bool orb = false;
@@ -109,8 +115,7 @@ void refuse_unused(const CLI::App& command, const LoopSettings& settings) {
     words = words || (!method.orb && method.words);
   }
   const auto check = [&](const char* option, bool used, const char* meant) {
-    if (used || command.count(option) == 0) return;
-    throw InputError(fmt::format("option {} has no use here, expected it {}", option, meant));
+    refuse_unused(command, option, used, meant);
   };
   for (const char* option : {"--radius", "--angle", "--unclear", "--overlap"}) {
     check(option, settings.truth == "poses", "with --ground-truth poses");
@@ -133,40 +138,40 @@ void add_input_options(CLI::App& command, LoopSettings& settings) {
                   "all, left or right: images of which camera, where two take turns")
       ->check(one_of({"all", "left", "right"}))
       ->capture_default_str();
-  command.add_option("--stride", settings.stride, "Use every n-th frame")->check(whole_number(1));
-  command.add_option("--max-frames", settings.max_frames, "Stop after so many frames, 0 = use all")
+  command.add_option("--stride", settings.stride, "use every n-th frame")->check(whole_number(1));
+  command.add_option("--max-frames", settings.max_frames, "stop after so many frames, 0 = use all")
       ->check(whole_number(0));
   PoseLoopOptions& poses = settings.poses;
-  command.add_option("--window", poses.window, "Seconds that a view must be old to be found")
+  command.add_option("--window", poses.window, "seconds that a view must be old to be found")
       ->check(range_of<PoseLoopOptions>("window"))
       ->capture_default_str();
-  command.add_option("--radius", poses.radius, "True loops from poses: metres apart at most")
+  command.add_option("--radius", poses.radius, "true loops from poses: metres apart at most")
       ->check(range_of<PoseLoopOptions>("radius"))
       ->capture_default_str();
-  command.add_option("--angle", poses.angle, "True loops from poses: degrees apart at most")
+  command.add_option("--angle", poses.angle, "true loops from poses: degrees apart at most")
       ->check(range_of<PoseLoopOptions>("angle"))
       ->capture_default_str();
   command
       .add_option("--unclear", poses.unclear,
-                  "Pairs within so many times radius and angle are neither right nor wrong")
+                  "pairs within so many times radius and angle are neither right nor wrong")
       ->check(range_of<PoseLoopOptions>("unclear"))
       ->capture_default_str();
   command
       .add_option("--overlap", poses.overlap,
-                  "Pairs that share this much of what they see are not wrong (with depth)")
+                  "pairs that share this much of what they see are not wrong (with depth)")
       ->check(range_of<PoseLoopOptions>("overlap"))
       ->capture_default_str();
   command
       .add_option("--second-pass-from", settings.second_pass_from,
-                  "Frames before it are places only, frames from it on queries only")
+                  "frames before it are places only, frames from it on queries only")
       ->check(whole_number(0));
   command
       .add_option("--low-light-from", settings.low_light_from,
-                  "Darken the images from this frame on (low-light model)")
+                  "darken the images from this frame on (low-light model)")
       ->check(whole_number(0));
   command
       .add_option("--low-light-gain", settings.low_light_gain,
-                  fmt::format("How much (default {})", LowLight::kDefaultGain))
+                  fmt::format("how much (default {})", LowLight::kDefaultGain))
       ->check(low_light_gain());
 }
 
@@ -175,7 +180,7 @@ void add_method_options(CLI::App& command, LoopsArguments& arguments) {
   command
       .add_option(
           "--method", settings.methods,
-          fmt::format("One or more, separated by commas: {}", fmt::join(loop_method_names(), ", ")))
+          fmt::format("one or more, separated by commas: {}", fmt::join(loop_method_names(), ", ")))
       ->delimiter(',')
       ->check(accepted_by([](const std::string& name) { parse_loop_method(name); }))
       ->required();
@@ -183,29 +188,29 @@ void add_method_options(CLI::App& command, LoopsArguments& arguments) {
                      "YAML file of thresholds and other options of the detector");
   command
       .add_option("--candidates", settings.detector.candidates,
-                  "Similar places by words whose global descriptors are compared")
+                  "similar places by words whose global descriptors are compared")
       ->check(range_of<LoopOptions>("candidates"))
       ->capture_default_str();
   command
       .add_option("--features", settings.features,
-                  "Extractor of all methods but orb-bow: name or model manifest")
+                  "extractor of all methods but orb-bow: name or model manifest")
       ->check(extractor_name());
   command.add_option("--vocabulary", settings.hf_vocabulary,
-                     "Its vocabulary (default: models/vocabulary/NAME.fbow)");
+                     "its vocabulary (default: models/vocabulary/NAME.fbow)");
   command.add_option("--orb-vocabulary", settings.orb_vocabulary,
-                     "Vocabulary of orb-bow (default: models/vocabulary/orb.fbow)");
+                     "vocabulary of orb-bow (default: models/vocabulary/orb.fbow)");
   command
       .add_option("--max-keypoints", settings.extractor.max_keypoints,
-                  "Keypoints an image of either extractor; 0 = as it says")
+                  "most keypoints per image, of either extractor; 0 = as it says")
       ->check(range_of<ExtractorOptions>("max_keypoints"))
       ->capture_default_str();
-  command.add_option("--threads", settings.extractor.threads, "Threads of the network")
+  command.add_option("--threads", settings.extractor.threads, "threads of the network")
       ->check(range_of<ExtractorOptions>("threads"))
       ->capture_default_str();
   command.add_flag("--deterministic", settings.extractor.deterministic,
-                   "Exact arithmetic: the same result every time");
+                   "exact arithmetic: the same result every time");
   command.add_option("--out", settings.out,
-                     "Folder for candidates.csv, pr.csv, pr.svg and summary.json");
+                     "folder for candidates.csv, pr.csv, pr.svg and summary.json");
 }
 
 }  // namespace
@@ -217,8 +222,8 @@ void add_loops_command(CLI::App& app) {
   add_input_options(*command, arguments->settings);
   add_method_options(*command, *arguments);
   command->callback([arguments, command] {
-    refuse_unused(*command, arguments->settings);
-    find_loops(*arguments);
+    refuse_unused_options(*command, arguments->settings);
+    if (const int code = find_loops(*arguments); code != kSuccess) throw CLI::RuntimeError(code);
   });
 }
 

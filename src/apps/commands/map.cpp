@@ -10,6 +10,7 @@
 #include "apps/command_files.h"
 #include "apps/commands.h"
 #include "apps/console.h"
+#include "apps/map_target.h"
 #include "apps/output_steps.h"
 #include "apps/recording_report.h"
 #include "apps/usage.h"
@@ -109,8 +110,9 @@ void print_info(const StoredMap& stored, const MapStatistics& s, double bytes) {
   print("loops         {}\n", stored.loops.size());
   for (std::size_t i = 0; i < s.components.size(); ++i) {
     const ComponentSize& part = s.components[i];
-    print("component {:<3} {} keyframes, {} points, {:.1f} m, stamps {:.3f} to {:.3f}\n", i,
-          part.keyframes, part.points, part.extent, part.first_stamp, part.last_stamp);
+    print("component {:<3} {}, {}, {:.1f} m, stamps {:.3f} to {:.3f}\n", i,
+          counted(part.keyframes, "keyframe"), counted(part.points, "point"), part.extent,
+          part.first_stamp, part.last_stamp);
   }
 }
 
@@ -134,13 +136,14 @@ void check_command(const MapArguments& arguments) {
   const StoredMap stored = load_map(arguments.files.front());
   const MapStatistics s = map_statistics(stored);
   print("checksums     right\n");
-  print("relations     sound: {} keyframes, {} points, {} observations, {} loops\n",
-        stored.map.keyframe_count(), stored.map.point_count(), s.observations, stored.loops.size());
+  print("relations     sound: {}, {}, {}, {}\n", counted(stored.map.keyframe_count(), "keyframe"),
+        counted(stored.map.point_count(), "point"), counted(s.observations, "observation"),
+        counted(stored.loops.size(), "loop"));
   print("reprojection  {:.2f} px median, {:.2f} px 95 %\n", s.median_error, s.p95_error);
-  print("behind camera {} observations\n", s.behind);
-  print("connected     {} groups of covisible keyframes in {} components\n", s.covisible_groups,
-        s.components.size());
-  print("blind         {} keyframes that see no point\n", s.blind_keyframes);
+  print("behind camera {}\n", counted(s.behind, "observation"));
+  print("connected     {} of covisible keyframes in {}\n", counted(s.covisible_groups, "group"),
+        counted(s.components.size(), "component"));
+  print("blind         {} without a point in view\n", counted(s.blind_keyframes, "keyframe"));
 }
 
 void export_command(const MapArguments& arguments) {
@@ -164,14 +167,16 @@ void export_command(const MapArguments& arguments) {
   }
   if (!arguments.colmap.empty()) steps.run([&] { write_map_colmap(arguments.colmap, stored); });
   if (!arguments.thumbnails.empty()) {
-    steps.run(
-        [&] { print("{} thumbnails\n", write_map_thumbnails(arguments.thumbnails, stored)); });
+    steps.run([&] {
+      print("{}\n", counted(write_map_thumbnails(arguments.thumbnails, stored), "thumbnail"));
+    });
   }
   steps.end_command();
 }
 
 void merge_command(const MapArguments& arguments) {
-  const auto lock = lock_map_target(arguments.out);  // which may be one of the maps
+  CommandFiles(arguments.files).writes("--out", arguments.out);
+  MapTarget target(arguments.out, "");
   StoredMap merged = load_map(arguments.files.front());
   for (std::size_t i = 1; i < arguments.files.size(); ++i) {
     const std::string& path = arguments.files[i];
@@ -182,13 +187,16 @@ void merge_command(const MapArguments& arguments) {
   const std::size_t loops = arguments.apart ? 0 : weld_components(merged);
   const MapSnapshot snapshot =
       take_snapshot(merged.header, merged.map, merged.loops, merged.thumbnails);
+  target.prepare();
   save_map(arguments.out, snapshot);
+  target.finish();
   std::uint32_t components = 0;
   for (const Keyframe& k : snapshot.parts.keyframes) {
     components = std::max(components, k.component + 1);
   }
-  print("{} keyframes and {} points in {} components; {} common places\n",
-        snapshot.parts.keyframes.size(), snapshot.parts.points.size(), components, loops);
+  print("{} and {} in {}; {}\n", counted(snapshot.parts.keyframes.size(), "keyframe"),
+        counted(snapshot.parts.points.size(), "point"), counted(components, "component"),
+        counted(loops, "common place"));
 }
 
 CLI::App* add_action(CLI::App& map, const char* name, const char* about,
@@ -218,6 +226,9 @@ void add_map_command(CLI::App& app) {
 
   CLI::App* exporting =
       add_action(*map, "export", "write a map for other programs", export_command, arguments);
+  exporting->parse_complete_callback([exporting] {
+    refuse_unused(*exporting, "--component", exporting->count("--ply") > 0, "with --ply");
+  });
   exporting->add_option("--ply", arguments->ply, "points and keyframes as a PLY file")
       ->option_text("FILE");
   exporting

@@ -79,16 +79,16 @@ int record(const RecordArguments& arguments) {
 void add_record_command(CLI::App& app) {
   const auto arguments = std::make_shared<RecordArguments>();
   CLI::App* command = app.add_subcommand(
-      "record", "Write a source down as MCAP, which ROS 2 reads, or as a folder of images");
+      "record", "write a source down as MCAP, which ROS 2 reads, or as a folder of images");
   command->add_option("SOURCE", arguments->source, source_help())->required();
-  command->add_option("--out", arguments->out, "New file that ends in .mcap, or new folder")
+  command->add_option("--out", arguments->out, "new file that ends in .mcap, or new folder")
       ->required();
   add_reader_options(*command, arguments->reader);
   command->add_option("--association", arguments->reader.association,
-                      "File that pairs colour with depth images");
-  command->add_option("--stride", arguments->selection.stride, "Take every n-th image")
+                      "file that pairs colour with depth images");
+  command->add_option("--stride", arguments->selection.stride, "take every n-th image")
       ->check(whole_number(1));
-  command->add_option("--max-frames", arguments->selection.most, "Stop after so many, 0 = all")
+  command->add_option("--max-frames", arguments->selection.most, "stop after so many, 0 = all")
       ->check(whole_number(0));
   command->callback([arguments] {
     if (const int code = record(*arguments); code != kSuccess) throw CLI::RuntimeError(code);

@@ -71,10 +71,12 @@ struct Results {
       "keyframe,coverage\n";
   std::vector<double> times;
   std::vector<SkippedFrame> failed;
+  int most_inliers = 0;  // of one frame
 
   void add(double stamp, const RelocalizationReport& report, double ms) {
     if (report.accepted) poses.push_back({stamp, report.world_from_camera});
     times.push_back(ms);
+    most_inliers = std::max(most_inliers, report.inliers);
     rows += fmt::format("{:.6f},{:d},{},{},{:.3f},{:.4f},{},{},{:.4f},{},{},{:.3f}\n", stamp,
                         report.accepted, report.inliers, report.groups_tried, ms, report.confidence,
                         report.matched, report.visible, report.spread, report.component,
@@ -104,7 +106,6 @@ void write_results(OutputSteps& steps, ResultFolder& folder, const Results& resu
   if (!steps.run([&] { folder.begin(); })) return;
   steps.run([&] { write_trajectory(folder.file("poses.txt"), results.poses); });
   steps.run([&] { write_file_atomically(folder.file("relocalization.csv"), results.rows); });
-  if (steps.failures().empty()) folder.finish();
 }
 
 Results ask_all(const RelocalizeArguments& arguments, RgbdSequence& sequence,
@@ -114,9 +115,10 @@ Results ask_all(const RelocalizeArguments& arguments, RgbdSequence& sequence,
       arguments.low_light > 0.0 ? std::optional<LowLight>(arguments.low_light) : std::nullopt;
   Progress progress("frames", (sequence.size() + arguments.stride - 1) / arguments.stride);
   Results results;
+  ImageAttempts attempts;
   std::size_t done = 0;
   for (std::size_t i = 0; i < sequence.size(); i += arguments.stride) {
-    const auto failure = attempt_image(i, [&] {
+    const auto failure = attempts.attempt(i, [&] {
       std::optional<RgbdImage> image = sequence.read(i);
       if (!image || stop_requested()) return;
       if (low_light) image->color = low_light->apply(image->color, image->index);
@@ -133,6 +135,26 @@ Results ask_all(const RelocalizeArguments& arguments, RgbdSequence& sequence,
   }
   progress.finish();
   return results;
+}
+
+// The exit code, and why too few frames were found.
+int judge(const Results& results, const std::string& map) {
+  if (results.times.empty()) {
+    warn("no frame was found: no image could be read");
+    return kTrackingFailed;
+  }
+  const std::size_t found = results.poses.size();
+  const std::size_t frames = results.times.size();
+  if (static_cast<double>(found) >= kLeastTrackedShare * static_cast<double>(frames)) {
+    return kSuccess;
+  }
+  if (found > 0) {
+    warn("only {} of {} frames were found", found, frames);
+    return kTrackingFailed;
+  }
+  warn("no frame was found: at most {} keypoints of one agree with a pose in {}, of {} images",
+       results.most_inliers, map, frames);
+  return kTrackingFailed;
 }
 
 int relocalize(const RelocalizeArguments& arguments) {
@@ -157,12 +179,14 @@ int relocalize(const RelocalizeArguments& arguments) {
   OutputSteps steps;
   if (folder) write_results(steps, *folder, results);
   unsaved.reset();
-  print("{} of {} frames found in a map of {} keyframes; {:.1f} ms per frame (median)\n",
-        results.poses.size(), results.times.size(), map.stored.map.keyframe_count(),
-        summarise(results.times).median);
+  print("{} of {} found in a map of {}; {:.1f} ms per frame (median)\n", results.poses.size(),
+        counted(results.times.size(), "frame"),
+        counted(map.stored.map.keyframe_count(), "keyframe"), summarise(results.times).median);
   print_skipped(all_skipped(*sequence, results.failed));
   if (folder) steps.tell_place(folder->path());
-  return steps.report(stop_requested() ? kInterrupted : kSuccess);
+  const bool stopped = stop_requested();
+  return steps.end_results(folder ? &*folder : nullptr,
+                           stopped ? kInterrupted : judge(results, arguments.map));
 }
 
 }  // namespace

@@ -103,11 +103,20 @@ Trajectory poses_as_tracked(const System& system) {
   return poses;
 }
 
+void count_tracked(const System& system, RunRecord& record) {
+  record.frames_tracked = 0;
+  for (const ComponentSummary& component : system.components()) {
+    record.frames_tracked += component.frames;
+    record.maps += component.frames > 0 ? 1 : 0;
+  }
+}
+
 void conclude(const ImageOrigin& sequence, const Session& session, RunRecord& record) {
   if (session.system() == nullptr) return;
   const System& system = *session.system();
   record.trajectory = session.has_whole_map() ? system.trajectory() : poses_as_tracked(system);
   record.frames_tracked = record.trajectory.size();
+  if (session.has_whole_map()) count_tracked(system, record);
   record.truth = compare_with_truth(sequence, record.trajectory);
 }
 
@@ -115,14 +124,20 @@ void print_outcome(const RunRecord& record, const ImageOrigin& sequence, const S
   if (const System* system = session.system()) {
     const auto stages = session.statistics().stages();
     const auto frame = stages.find("frame");
-    print(
-        "{} of {} frames tracked, {} keyframes, {} points; {:.1f} ms per frame ({}), {:.1f} s in "
-        "all\n",
-        record.frames_tracked, record.frames_offered,
-        system->map_is_whole() ? system->map().keyframe_count() : 0,
-        system->map_is_whole() ? system->map().point_count() : 0,
-        frame == stages.end() ? 0.0 : frame->second.median_ms, system->extractor().name(),
-        record.wall_s);
+    const bool whole = system->map_is_whole();
+    print("{} of {} tracked{}, {}, {}; {:.1f} ms per frame ({}), {:.1f} s in all\n",
+          record.frames_tracked, counted(record.frames_offered, "frame"),
+          record.maps > 1 ? fmt::format(" in {} maps", record.maps) : "",
+          counted(whole ? system->map().keyframe_count() : 0, "keyframe"),
+          counted(whole ? system->map().point_count() : 0, "point"),
+          frame == stages.end() ? 0.0 : frame->second.median_ms, system->extractor().name(),
+          record.wall_s);
+  }
+  if (record.maps > 1) {
+    warn(
+        "the maps were not joined: {} of the tracked frames are in trajectory.txt, the others in "
+        "trajectory_mapN.txt",
+        record.trajectory.size());
   }
   if (record.truth) print_truth(*record.truth, sequence.camera());
   print_skipped(all_skipped(sequence, record.failed_images));
@@ -147,7 +162,7 @@ int end(const ImageOrigin& sequence, Session& session, OnlineTrajectory& online,
   const int code = judge_tracking(record.frames_tracked, record.frames_offered, record.why_no_pose);
   if (session.folder() != nullptr) steps.tell_place(session.folder()->path());
   session.tell_map();
-  return steps.report(record.interrupted ? kInterrupted : code);
+  return session.end(steps, record.interrupted ? kInterrupted : code);
 }
 
 std::unique_ptr<ImageSource> open_images_of(const RunArguments& arguments) {
@@ -159,11 +174,20 @@ std::unique_ptr<ImageSource> open_images_of(const RunArguments& arguments) {
   return make_image_source(std::move(recording), selection);
 }
 
+// Those that were left out as it was opened (stamps that come again) are frames that it never came
+// to.
+std::size_t frames_offered(const ImageSource& source, std::size_t left_out,
+                           const RunArguments& arguments) {
+  const bool all = arguments.max_frames == 0 && source.planned() == source.passed();
+  return source.passed() + (all ? left_out / arguments.settings.stride : 0);
+}
+
 int run(const RunArguments& arguments) {
   const Stopwatch startup;
   Session session(arguments.settings);
   const std::unique_ptr<ImageSource> source = open_images_of(arguments);
   require_depth(*source);
+  const std::size_t left_out = source->skipped().size();
   session.claim_targets();
   OnlineTrajectory online(session.folder(), "trajectory.txt");
   Progress progress("frames", source->planned().value_or(0));
@@ -186,7 +210,7 @@ int run(const RunArguments& arguments) {
   const Stopwatch wall;
   session.run([&] { feed(arguments, *source, session, record); });
   record.wall_s = wall.ms() / 1000.0;
-  record.frames_offered = source->passed();
+  record.frames_offered = frames_offered(*source, left_out, arguments);
   record.frames_dropped += source->dropped();
   progress.finish();
   return end(*source, session, online, record);
@@ -197,27 +221,27 @@ int run(const RunArguments& arguments) {
 void add_run_command(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   RunSettings& settings = arguments->settings;
-  CLI::App* command = app.add_subcommand("run", "Track a recording and build its map");
+  CLI::App* command = app.add_subcommand("run", "track a recording and build its map");
   command->add_option("SEQUENCE", arguments->sequence, source_help())->required();
-  command->add_option("--out", settings.out, "Folder for trajectory, map and summary");
+  command->add_option("--out", settings.out, "folder for trajectory, map and summary");
   add_run_options(*command, settings);
   command->add_option("--association", settings.reader.association,
-                      "File that pairs colour with depth images");
+                      "file that pairs colour with depth images");
   command->add_flag("--thumbnails", settings.thumbnails,
-                    "Put small pictures of the keyframes into the map, 3 to 6 KiB each");
+                    "put small pictures of the keyframes into the map, 3 to 6 KiB each");
   command
-      ->add_option("--max-frames", arguments->max_frames, "Stop after so many frames, 0 = use all")
+      ->add_option("--max-frames", arguments->max_frames, "stop after so many frames, 0 = use all")
       ->check(whole_number(0));
   command
       ->add_option_function<double>(
           "--low-light", [arguments](double gain) { arguments->low_light = gain; },
-          "Darken the images first (low-light model)")
+          "darken the images first (low-light model)")
       ->expected(0, 1)
       ->check(low_light_gain())
       ->default_str(fmt::format("{}", LowLight::kDefaultGain))
       ->type_name("[=GAIN]");
   command->add_flag("--realtime", arguments->realtime,
-                    "Feed images at their own pace, dropping late ones");
+                    "feed images at their own pace, dropping late ones");
   command->callback([arguments] {
     if (const int code = run(*arguments); code != kSuccess) throw CLI::RuntimeError(code);
   });

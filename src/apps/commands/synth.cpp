@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The dxslam authors
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <memory>
 #include <string>
 #include <thread>
@@ -10,6 +13,7 @@
 #include "apps/process.h"
 #include "apps/progress.h"
 #include "apps/usage.h"
+#include "core/lens.h"
 #include "synthetic/tum_writer.h"
 
 namespace dxslam::apps {
@@ -32,6 +36,12 @@ std::string factor_help() {
   return text;
 }
 
+std::vector<std::string> lens_names() {
+  std::vector<std::string> names;
+  for (const LensModel* model : lens_models()) names.emplace_back(model->name);
+  return names;
+}
+
 void run_synth(SynthArguments& arguments) {
   for (const std::string& factor : arguments.factors) {
     set_factor(arguments.options.factors, factor);
@@ -50,14 +60,15 @@ void run_synth(SynthArguments& arguments) {
   const Unsaved unsaved;
   if (!write_tum_sequence(sequence, arguments.out, writer)) return;
   progress.finish();
-  print("{} frames, {:.1f} m, in {}\n", sequence.size(), sequence.path_length(), arguments.out);
+  print("{}, {:.1f} m, in {}\n", counted(sequence.size(), "frame"), sequence.path_length(),
+        arguments.out);
 }
 
 }  // namespace
 
 void add_synth_command(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("synth", "Make a recording of a synthetic place (TUM RGB-D format)");
+      app.add_subcommand("synth", "make a recording of a synthetic place (TUM RGB-D format)");
   auto arguments = std::make_shared<SynthArguments>();
   SyntheticOptions& options = arguments->options;
   options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -83,8 +94,10 @@ void add_synth_command(CLI::App& app) {
   command->add_option("--focal-length", options.focal_length, "of the camera, in image widths")
       ->check(range_of<SyntheticOptions>("focal_length"))
       ->capture_default_str();
-  command->add_option("--lens", options.lens,
-                      "radtan, rational, kannala_brandt or double_sphere (default: none)");
+  command
+      ->add_option("--lens", options.lens,
+                   fmt::format("{} (default: none)", fmt::join(lens_names(), ", ")))
+      ->check(one_of(lens_names()));
   command->add_option("--speed", options.path.speed, "walking speed, m/s; 0: the scene's own")
       ->check(range_of<PathOptions>("speed"))
       ->capture_default_str();
@@ -120,7 +133,10 @@ void add_synth_command(CLI::App& app) {
   command->add_option("--threads", options.threads, "frames drawn at once")
       ->check(range_of<SyntheticOptions>("threads"))
       ->capture_default_str();
-  command->callback([arguments] { run_synth(*arguments); });
+  command->callback([arguments, command] {
+    refuse_unused(*command, "--factor-seed", !arguments->factors.empty(), "with --factor");
+    run_synth(*arguments);
+  });
 }
 
 }  // namespace dxslam::apps

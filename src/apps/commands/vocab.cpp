@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "apps/command_files.h"
 #include "apps/commands.h"
 #include "apps/console.h"
 #include "apps/features_arguments.h"
@@ -27,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kImagesACheckpoint = 200;
+constexpr std::size_t kImagesPerCheckpoint = 200;
 
 struct TrainArguments {
   std::vector<std::string> sources;
@@ -104,7 +105,7 @@ bool add_images(const TrainArguments& arguments, ImageStream& stream, FeatureExt
     }
     position = index + 1;
     progress.update(position, fmt::format("{} words open", trainer.open_words()));
-    if (position % kImagesACheckpoint == 0) checkpoint.try_to_save(position);
+    if (position % kImagesPerCheckpoint == 0) checkpoint.try_to_save(position);
     return !stop_requested();
   });
   progress.finish();
@@ -135,18 +136,20 @@ int train(const TrainArguments& arguments) {
   // The tree is made at one go; from the checkpoint it can be made again.
   checkpoint.try_to_save(stream.size());
   unsaved.reset();
-  Progress progress("tree", 1000);
-  const Vocabulary vocabulary = trainer.finish(
-      fmt::format("{} {}", extractor->name(), arguments.options.method), [&](double share) {
-        progress.update(static_cast<std::size_t>(share * 1000.0), "per mille");
+  constexpr std::size_t kSteps = 1000;
+  Progress progress("tree", kSteps, Progress::Unit::kShare);
+  const Vocabulary vocabulary =
+      trainer.finish(trained_name(extractor->name(), arguments.options.method), [&](double share) {
+        progress.update(static_cast<std::size_t>(share * kSteps), "grouping words");
       });
   progress.finish();
   vocabulary.save(arguments.out);
   std::error_code ignored;
   if (!arguments.checkpoint.empty()) fs::remove(arguments.checkpoint, ignored);
   const VocabularyInfo info = vocabulary.info();
-  print("{}: {} words of {} {} from {} images, {} levels\n", arguments.out, info.words,
-        info.dimension, info.binary ? "bytes" : "floats", trainer.images(), info.depth);
+  print("{}: {} of {} {} from {}, {}\n", arguments.out, counted(info.words, "word"), info.dimension,
+        info.binary ? "bytes" : "floats", counted(trainer.images(), "image"),
+        counted(static_cast<std::size_t>(info.depth), "level"));
   if (stream.skipped() > 0) {
     warn("images that were skipped: {}; the first: {}", stream.skipped(), stream.first_skipped());
   }
@@ -177,6 +180,7 @@ struct ConvertArguments {
 void convert(const ConvertArguments& arguments) {
   std::string format = arguments.format;
   if (format == "auto") format = fs::path(arguments.out).extension() == ".txt" ? "dbow2" : "fbow";
+  CommandFiles({arguments.in}).writes("OUT", arguments.out);
   Vocabulary::require_target(arguments.out);
   const Vocabulary vocabulary = Vocabulary::load(arguments.in);
   if (format == "dbow2") {
@@ -242,7 +246,12 @@ void add_train_command(CLI::App& vocab) {
                       "file for the state of an interrupted training, which a second call with the "
                       "same arguments goes on from");
   add_feature_options(*command, arguments->extractor);
-  command->callback([arguments] {
+  command->callback([arguments, command] {
+    const bool incremental = arguments->options.method == "incremental";
+    for (const char* option :
+         {"--matched-per-image", "--match-ratio", "--min-observations", "--max-open-words"}) {
+      refuse_unused(*command, option, incremental, "with --method incremental");
+    }
     if (const int code = train(*arguments); code != kSuccess) throw CLI::RuntimeError(code);
   });
 }
