@@ -335,6 +335,11 @@ class FailedOutputs(Outputs):
 class InnerErrors(Outputs):
     """Memory ends for a while: no image can be read or worked on."""
 
+    @staticmethod
+    def pages_of(process):
+        time.sleep(0.003)
+        return int(pathlib.Path(f"/proc/{process.pid}/statm").read_text().split()[0])
+
     def without_memory_for_a_while(self, poses_file, *command):
         """Runs a command, and takes memory from it once there are some poses; what it says."""
         # Large blocks come from the system each time, so that the limit is felt; small ones do not.
@@ -345,16 +350,17 @@ class InnerErrors(Outputs):
                                         "MALLOC_TOP_PAD_": "0"})
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
-        deadline = time.monotonic() + TIMEOUT
+        begun = time.monotonic()
         while not poses_file.exists() or len(poses(poses_file)) < FRAMES // 2:
             self.assertIsNone(process.poll(), "the command ended before there were poses")
-            self.assertLess(time.monotonic(), deadline, "no pose appeared")
+            self.assertLess(time.monotonic(), begun + TIMEOUT, "no pose appeared")
             time.sleep(0.01)
-        pages = int(pathlib.Path(f"/proc/{process.pid}/statm").read_text().split()[0])
+        seconds_per_image = (time.monotonic() - begun) / (FRAMES // 2)
+        pages = min(self.pages_of(process) for _ in range(20))  # when it holds no image
         resource.prlimit(process.pid, resource.RLIMIT_AS,
                          (pages * resource.getpagesize() + ENOUGH_FOR_SMALL_BLOCKS,
                           resource.RLIM_INFINITY))
-        time.sleep(0.2)
+        time.sleep(max(0.2, 4 * seconds_per_image))  # some images fall into it, on any machine
         resource.prlimit(process.pid, resource.RLIMIT_AS, 2 * (resource.RLIM_INFINITY,))
         said = process.communicate(timeout=TIMEOUT)[1]
         return process.returncode, said
@@ -392,14 +398,15 @@ class InnerErrors(Outputs):
             self.out / "online_1.txt", "lifelong", *6 * [self.recording], "--map-out",
             self.folder / "m.dxmap")
         rows = json.loads((self.out / "lifelong.json").read_text())
-        self.assertEqual(len(rows), 6)
+        self.assertEqual(len(rows), 6, said)
         # How much is localized hangs on where memory ended: `orb` finds no place again.
         share = sum(row["localized"] for row in rows) / sum(row["frames"] for row in rows)
         self.assertEqual(code, 0 if share >= LEAST_SHARE else TRACKING_FAILED, said)
         self.assertGreater(sum(row["skipped_frames"] for row in rows), 0)
         for number, row in enumerate(rows, 1):
             self.assertEqual(len(poses(self.out / f"online_{number}.txt")), row["localized"])
-        self.assertEqual(rows[-1]["frames"], FRAMES)
+        for row in rows:  # none is lost without a word
+            self.assertGreaterEqual(row["frames"] + row["skipped_frames"], FRAMES, row)
         self.ends(dxslam("map", "check", self.folder / "m.dxmap"), 0)
 
 
