@@ -379,35 +379,52 @@ class InnerErrors(Outputs):
             told += "memory" in done.stderr
         self.assertGreater(told, 0)
 
+    def until_it_is_felt(self, poses_file, *command):
+        """The same, again where memory came back before anything wanted some."""
+        for _ in range(5):
+            shutil.rmtree(self.out, ignore_errors=True)
+            (self.folder / "m.dxmap").unlink(missing_ok=True)
+            code, said = self.without_memory_for_a_while(poses_file, *command, "--map-out",
+                                                         self.folder / "m.dxmap")
+            if "frames that were skipped: " in said or code == BAD_INPUT:
+                break
+        # What fails in tracking or mapping ends the run, but all that is whole is saved.
+        self.assertNotIn("internal error", said)
+        self.assertNotIn("OpenCV(", said)
+        if "half changed" not in said:
+            self.ends(dxslam("map", "check", self.folder / "m.dxmap"), 0)
+        return code, said
+
     def test_cost_a_run_only_their_images(self):
-        code, said = self.without_memory_for_a_while(
-            self.out / "trajectory.txt", "run", self.recording, "--realtime", "--map-out",
-            self.folder / "m.dxmap")
+        code, said = self.until_it_is_felt(self.out / "trajectory.txt", "run", self.recording,
+                                           "--realtime")
         summary = self.summary()
+        self.assertEqual(names(self.out), RESULTS)
+        self.assertGreaterEqual(summary["tracked"], FRAMES // 2)
+        if code == BAD_INPUT:
+            self.assertIn("memory", summary["error"])
+            return
         self.assertIn("frames that were skipped: ", said)
-        self.assertNotIn("OpenCV(", json.dumps(summary["skipped_frames"]))
         self.assertGreater(len(summary["skipped_frames"]), 0)
         self.assertIsNone(summary["error"])
-        self.assertEqual(names(self.out), RESULTS)
         self.assertEqual(code, 0, said)
-        self.assertGreaterEqual(summary["tracked"], FRAMES // 2)
-        self.ends(dxslam("map", "check", self.folder / "m.dxmap"), 0)
 
     def test_cost_lifelong_only_their_images(self):
-        code, said = self.without_memory_for_a_while(
-            self.out / "online_1.txt", "lifelong", *6 * [self.recording], "--map-out",
-            self.folder / "m.dxmap")
+        code, said = self.until_it_is_felt(self.out / "online_1.txt", "lifelong",
+                                           *6 * [self.recording])
         rows = json.loads((self.out / "lifelong.json").read_text())
+        for number, row in enumerate(rows, 1):
+            self.assertEqual(len(poses(self.out / f"online_{number}.txt")), row["localized"])
+        if code == BAD_INPUT:
+            self.assertIn("memory", said)
+            return
         self.assertEqual(len(rows), 6, said)
         # How much is localized hangs on where memory ended: `orb` finds no place again.
         share = sum(row["localized"] for row in rows) / sum(row["frames"] for row in rows)
         self.assertEqual(code, 0 if share >= LEAST_SHARE else TRACKING_FAILED, said)
         self.assertGreater(sum(row["skipped_frames"] for row in rows), 0)
-        for number, row in enumerate(rows, 1):
-            self.assertEqual(len(poses(self.out / f"online_{number}.txt")), row["localized"])
         for row in rows:  # none is lost without a word
             self.assertGreaterEqual(row["frames"] + row["skipped_frames"], FRAMES, row)
-        self.ends(dxslam("map", "check", self.folder / "m.dxmap"), 0)
 
 
 class Told(Outputs):
