@@ -38,6 +38,17 @@ def poses(file):
     return [[float(word) for word in line.split()] for line in lines]
 
 
+def run_tests():
+    """Those of the program that was started. Exits with 77 if all are skipped, as ctest is told."""
+    # What is ignored here, as below nohup, would be in the programs, too.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+    outcome = unittest.main(verbosity=2, exit=False).result
+    if outcome.testsRun and len(outcome.skipped) == outcome.testsRun:
+        sys.exit(77)
+    sys.exit(not outcome.wasSuccessful())
+
+
 class Recorded(unittest.TestCase):
     """Tests that share one small synthetic recording, which they must not change."""
 
@@ -488,9 +499,4 @@ class RealRecordings(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # where a shell has it ignored, programs would, too
-    program = unittest.main(verbosity=2, exit=False)
-    outcome = program.result
-    if outcome.testsRun and len(outcome.skipped) == outcome.testsRun:
-        sys.exit(77)  # ctest shows it as skipped
-    sys.exit(not outcome.wasSuccessful())
+    run_tests()

@@ -8,11 +8,10 @@ usage: command_line_test.py [CLASS[.test]]   with $DXSLAM_PROGRAM or build/relea
 import os
 import resource
 import shutil
-import signal
-import sys
 import tempfile
 import unittest
 
+from cli_test import run_tests
 from process_test import BAD_INPUT, BAD_USAGE, SUCCESS, Made, program
 
 
@@ -226,11 +225,4 @@ class Permissions(Made):
 
 
 if __name__ == "__main__":
-    # What is ignored here, as below nohup, would be in the programs, too.
-    for number_ in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number_, signal.SIG_DFL)
-    program_ = unittest.main(verbosity=2, exit=False)
-    outcome = program_.result
-    if outcome.testsRun and len(outcome.skipped) == outcome.testsRun:
-        sys.exit(77)  # ctest shows it as skipped
-    sys.exit(not outcome.wasSuccessful())
+    run_tests()

@@ -10,13 +10,12 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 from pathlib import Path
 
-from cli_test import TIMEOUT
+from cli_test import TIMEOUT, run_tests
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("DXSLAM_PROGRAM", str(ROOT / "build" / "release" / "dxslam"))
@@ -409,11 +408,4 @@ class Signals(Made):
 
 
 if __name__ == "__main__":
-    # What is ignored here, as below nohup, would be in the programs, too.
-    for number_ in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number_, signal.SIG_DFL)
-    program_ = unittest.main(verbosity=2, exit=False)
-    outcome = program_.result
-    if outcome.testsRun and len(outcome.skipped) == outcome.testsRun:
-        sys.exit(77)  # ctest shows it as skipped
-    sys.exit(not outcome.wasSuccessful())
+    run_tests()
