@@ -5,7 +5,6 @@
 // lie in chunks with index records behind them, or by themselves. The summary at the end is read
 // like the rest but not needed, so a file whose recorder was killed reads like any other.
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <optional>
 #include <unordered_map>
@@ -15,22 +14,17 @@
 #include "io/bags/byte_reader.h"
 #include "io/bags/decompress.h"
 #include "io/bags/indexed_bag.h"
+#include "io/bags/mcap_format.h"
 #include "io/bags/random_access_file.h"
+#include "io/primitives/crc32.h"
 #include "io/primitives/limits.h"
 
 namespace dxslam {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::uint64_t kHeadOfChunk = 8 + 8 + 8 + 4 + 4;  // up to its compression's text
 constexpr std::size_t kHeadOfMessage = 2 + 4 + 8 + 8;      // channel, sequence, two times
-enum class Op : std::uint8_t {
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7
-};
+using Op = McapOp;
 
 struct Channel {
   std::uint16_t schema = 0;
@@ -41,7 +35,7 @@ struct Channel {
 class Mcap : public IndexedBag {
  public:
   explicit Mcap(const std::string& path) : file_(path) {
-    if (file_.size() < kMagic.size() || file_.read(0, kMagic.size()) != kMagic) {
+    if (file_.size() < kMcapMagic.size() || file_.read(0, kMcapMagic.size()) != kMcapMagic) {
       throw InputError(fmt::format("{}: no MCAP file", path));
     }
     scan();
@@ -102,12 +96,12 @@ class Mcap : public IndexedBag {
 
   void scan() {
     const std::uint64_t end =
-        file_.size() >= 2 * kMagic.size() &&
-                file_.read(file_.size() - kMagic.size(), kMagic.size()) == kMagic
-            ? file_.size() - kMagic.size()
+        file_.size() >= 2 * kMcapMagic.size() &&
+                file_.read(file_.size() - kMcapMagic.size(), kMcapMagic.size()) == kMcapMagic
+            ? file_.size() - kMcapMagic.size()
             : file_.size();
     scan_records(
-        file_, kMagic.size(), end, [this](std::uint64_t at) { return record_at(at); },
+        file_, kMcapMagic.size(), end, [this](std::uint64_t at) { return record_at(at); },
         [this](std::uint64_t at, const Record& record) { add_record(at, record); });
     add_messages_of_unindexed_chunk();
     name_topics();
@@ -266,9 +260,7 @@ class Mcap : public IndexedBag {
     const std::string where = fmt::format("{}: chunk at byte {}", file_.path(), position);
     std::string bytes =
         decompress(file_.read(chunk.data, chunk.packed), chunk.compression, chunk.unpacked, where);
-    const auto sum =
-        crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
-    if (chunk.checksum != 0 && sum != chunk.checksum) {
+    if (chunk.checksum != 0 && crc32_of(bytes) != chunk.checksum) {
       throw InputError(where + " is damaged, its checksum is wrong");
     }
     return bytes;

@@ -2,32 +2,19 @@
 // Copyright 2026 The dxslam authors
 #include "io/bags/mcap_writer.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "core/error.h"
 #include "io/bags/byte_writer.h"
 #include "io/bags/compress.h"
+#include "io/bags/mcap_format.h"
+#include "io/primitives/crc32.h"
 
 namespace dxslam {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-enum class Op : std::uint8_t {
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7,
-  kChunkIndex = 8,
-  kStatistics = 11,
-  kSummaryOffset = 14,
-  kDataEnd = 15
-};
+using Op = McapOp;
 
 std::string record(Op op, const ByteWriter& data) {
   return ByteWriter()
@@ -35,11 +22,6 @@ std::string record(Op op, const ByteWriter& data) {
       .number(static_cast<std::uint64_t>(data.bytes().size()))
       .raw(data.bytes())
       .bytes();
-}
-
-std::uint32_t checksum(std::uint32_t before, std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 /// The summary as it grows, with where each kind of record begins.
@@ -64,7 +46,7 @@ class Summary {
                ByteWriter().number(start_).number(start_ + bytes_.size()).number(std::uint32_t{0}));
     std::string all = bytes_ + offsets_ + footer;
     all.resize(all.size() - kChecksumBytes);
-    return ByteWriter().raw(all).number(checksum(0, all)).bytes();
+    return ByteWriter().raw(all).number(crc32_of(all)).bytes();
   }
 
  private:
@@ -77,7 +59,8 @@ class Summary {
 
 McapWriter::McapWriter(const std::string& path, std::string compression)
     : file_(path), compression_(std::move(compression)) {
-  append(std::string(kMagic) + record(Op::kHeader, ByteWriter().string("ros2").string("dxslam")));
+  append(std::string(kMcapMagic) +
+         record(Op::kHeader, ByteWriter().string("ros2").string("dxslam")));
 }
 
 std::uint16_t McapWriter::add_topic(const std::string& topic, const std::string& type,
@@ -116,7 +99,7 @@ void McapWriter::flush() {
   std::string bytes = record(Op::kChunk, ByteWriter()
                                              .raw(times.bytes())
                                              .number(static_cast<std::uint64_t>(chunk_.size()))
-                                             .number(checksum(0, chunk_))
+                                             .number(crc32_of(chunk_))
                                              .string(compression_)
                                              .number(static_cast<std::uint64_t>(packed.size()))
                                              .raw(packed));
@@ -167,7 +150,7 @@ void McapWriter::finish() {
   summary.add_group(Op::kChannel, channels);
   summary.add_group(Op::kStatistics, {statistics()});
   summary.add_group(Op::kChunkIndex, chunk_indexes_);
-  append(summary.finish() + std::string(kMagic));
+  append(summary.finish() + std::string(kMcapMagic));
 }
 
 std::string McapWriter::statistics() const {
@@ -191,7 +174,7 @@ std::string McapWriter::statistics() const {
 
 void McapWriter::append(const std::string& bytes) {
   file_.append(bytes);
-  checksum_ = checksum(checksum_, bytes);
+  checksum_ = crc32_of(bytes, checksum_);
 }
 
 }  // namespace dxslam

@@ -3,10 +3,10 @@
 #include "io/formats/npz_writer.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include "core/error.h"
 #include "io/primitives/atomic_file.h"
+#include "io/primitives/crc32.h"
 
 namespace dxslam {
 namespace {
@@ -98,8 +98,7 @@ void NpzWriter::write(const std::string& path) const {
   for (const Member& member : members_) {
     require(archive.size() + member.bytes.size() + directory.size() + 1024 < kLargestArchive,
             "archive beyond 4 GiB");
-    const auto checksum = static_cast<std::uint32_t>(
-        crc32_z(0, reinterpret_cast<const Bytef*>(member.bytes.data()), member.bytes.size()));
+    const std::uint32_t checksum = crc32_of(member.bytes);
     const auto offset = static_cast<std::uint32_t>(archive.size());
     const auto size = static_cast<std::uint32_t>(member.bytes.size());
     // Version needed, flags, method (0: stored), time and date, checksum, sizes, name length.

@@ -2,10 +2,10 @@
 // Copyright 2026 The dxslam authors
 #include "io/primitives/picture_mark.h"
 
-#include <zlib.h>
-
 #include <cstdint>
 #include <utility>
+
+#include "io/primitives/crc32.h"
 
 namespace dxslam {
 namespace {
@@ -33,9 +33,7 @@ std::string png_mark(std::string_view software) {
   std::string mark;
   append_big_endian(static_cast<std::uint32_t>(body.size()) - 4, 4, mark);
   mark += body;
-  const uLong sum =
-      crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-  append_big_endian(static_cast<std::uint32_t>(sum), 4, mark);
+  append_big_endian(crc32_of(body), 4, mark);
   return mark;
 }
 
