@@ -2,16 +2,10 @@
 // Copyright 2026 The dxslam authors
 #include "relocalization/consensus.h"
 
-#include <algorithm>
-
 #include "core/options.h"
+#include "core/reach.h"
 
 namespace dxslam {
-namespace {
-
-constexpr double kDegree = 0.017453292519943295;
-
-}  // namespace
 
 RelocalizationConsensus::RelocalizationConsensus(const ConsensusOptions& options)
     : options_(options) {
@@ -49,10 +43,8 @@ bool RelocalizationConsensus::agrees(double stamp, const RelocalizationReport& r
       report.component != last_.component) {
     return false;
   }
-  const double distance = translation_distance(last_.world_from_camera, report.world_from_camera);
-  const double angle = rotation_angle(last_.world_from_camera, report.world_from_camera) / kDegree;
-  return distance <= options_.distance_slack + options_.max_speed * passed &&
-         angle <= options_.angle_slack + options_.max_turn * passed;
+  return is_within_reach(options_, last_.world_from_camera.inverse() * report.world_from_camera,
+                         passed);
 }
 
 }  // namespace dxslam

@@ -3,21 +3,18 @@
 #include "tracking/recovery.h"
 
 #include <algorithm>
-#include <numbers>
+
+#include "core/reach.h"
 
 namespace dxslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 // After more than this a camera may be anywhere, and nothing counts as near.
 constexpr double kLongestStep = 1.0;  // seconds
 
 bool is_near(const RecoveryOptions& options, const RecoveryStep& step) {
   const double seconds = step.seconds > 0.0 ? std::min(step.seconds, kLongestStep) : kLongestStep;
-  return step.last_from_camera.translation().norm() <=
-             options.distance_slack + options.max_speed * seconds &&
-         rotation_angle(step.last_from_camera, SE3()) <=
-             (options.angle_slack + options.max_turn * seconds) * kDegrees;
+  return is_within_reach(options, step.last_from_camera, seconds);
 }
 
 }  // namespace
